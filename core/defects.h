@@ -1,0 +1,39 @@
+// Crystal-defect values: how each atom's neighbourhood differs from the perfect crystal's.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace atomesh {
+
+// A site of the crystal that holds no atom of its species.
+struct VacancySite {
+  Vec3 position;          // Å
+  std::uint16_t species;  // index into Atoms::species_table of what is missing
+  Index votes;            // neighbours that miss an atom there
+};
+
+// An atom that sits on no site of its species.
+struct ExtraAtom {
+  Index atom;   // index into Atoms
+  Index votes;  // neighbours to whom it is one too many
+};
+
+struct Defects {
+  // One value per atom each; all three empty when no unit cell is known and no scalar was chosen.
+  std::vector<float>
+      positional;  // Σ squared displacement of matched neighbours, in units of the squared nearest-neighbour distance
+  std::vector<float> vacancy;  // neighbours the perfect crystal has and the sample lacks
+  std::vector<float> extra;    // neighbours the sample has and the perfect crystal lacks
+  std::vector<VacancySite> vacancies;
+  std::vector<ExtraAtom> extras;
+
+  bool present() const { return !positional.empty(); }
+  // True where any of the three values is not zero.
+  bool defective(std::size_t atom) const {
+    return present() && (positional[atom] != 0.0F || vacancy[atom] != 0.0F || extra[atom] != 0.0F);
+  }
+};
+
+}  // namespace atomesh

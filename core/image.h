@@ -1,0 +1,48 @@
+// Pictures: float channels, PNG files, and the comparison of two.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace atomesh {
+
+// Row-major from the top left. Colours are not premultiplied, in [0,1], display-referred (no gamma is applied
+// anywhere).
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<Vec4f> pixels;
+
+  Image() = default;
+  Image(int w, int h) : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+  Vec4f& at(int column, int row) {
+    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+  }
+  const Vec4f& at(int column, int row) const {
+    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+  }
+};
+
+// 8-bit RGB, or RGBA where a pixel is not opaque; `text` becomes tEXt/iTXt chunks (the parameters that made the
+// picture). Written beside and renamed. Throws Error when it cannot be written.
+void write_png(const std::string& path, const Image& image,
+               const std::vector<std::pair<std::string, std::string>>& text = {});
+// Any PNG of 8 or 16 bits, gray, palette or colour. Throws InputError for anything else, truncated or damaged files.
+Image read_png(const std::string& path);
+
+struct ImageDifference {
+  double max = 0.0;             // largest absolute channel difference, channels in [0,1]
+  double rmse = 0.0;            // over all pixels and the channels RGBA
+  double psnr = 0.0;            // dB, -20 log10(rmse); infinity when equal
+  std::size_t pixels_over = 0;  // pixels with a channel difference above the tolerance
+};
+
+// Throws Error naming both sizes when they differ.
+ImageDifference compare_images(const Image& a, const Image& b, double tolerance = 0.0);
+// |a-b| amplified by `gain`, opaque, black where equal.
+Image difference_picture(const Image& a, const Image& b, double gain = 8.0);
+
+}  // namespace atomesh

@@ -1,0 +1,30 @@
+// Defective atoms and sites gathered into clusters a person can check one by one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/material.h"
+
+namespace atomesh {
+
+enum class DefectKind { vacancy, extra, positional, mixed };
+
+struct DefectCluster {
+  DefectKind kind;
+  Vec3 centre;                   // Å
+  double radius;                 // Å, of the sphere about the centre that holds every member
+  std::vector<Index> atoms;      // defective atoms, ascending
+  std::vector<Index> vacancies;  // into Defects::vacancies
+  std::vector<Index> extras;     // into Defects::extras
+  float peak;                    // largest single defect value of its atoms
+};
+
+std::string_view defect_kind_name(DefectKind kind);  // "vacancy", "extra", "positional", "mixed"
+DefectKind defect_kind_from_name(std::string_view name);
+
+// Atoms whose values are not zero are joined when closer than `distance` (0: 1.3 × the median nearest-neighbour
+// distance), through periodic boundaries; sorted by number of atoms, largest first.
+std::vector<DefectCluster> cluster_defects(const Material& material, double distance = 0.0);
+
+}  // namespace atomesh

@@ -1,0 +1,51 @@
+// The renderers by name, and the one function that draws a picture.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/parameters.h"
+#include "core/progress.h"
+#include "render/scene.h"
+
+namespace atomesh {
+
+struct RenderStats {
+  double setup_ms = 0.0;   // acceleration structures, projection, sorting
+  double render_ms = 0.0;  // the pixels
+  std::uint64_t steps = 0;  // ray–primitive intersections that contributed (ray–tetrahedron steps in the volume modes)
+};
+
+// Optional per-pixel outputs beside the colour, row-major like the image; filled when the caller sets the pointer.
+struct Channels {
+  std::vector<float>* thickness = nullptr;  // xray: Å of the ray inside the sample
+  std::vector<float>* depth =
+      nullptr;  // surface, atoms: depth along Camera::forward of the nearest hit, infinity where none
+  std::vector<Index>* id =
+      nullptr;  // surface: triangle, atoms: atom (Ball::atom) of the nearest hit; no_index where none
+};
+
+// A renderer draws all five modes of a Scene. It returns the picture over a transparent background: premultiplied RGB
+// and coverage A (0 where the ray meets nothing), so that the background is laid under it in one place.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  virtual std::string_view name() const = 0;
+  // Draws with the camera's width × height. Identical for any number of threads.
+  virtual Image draw(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
+                     const Channels& channels, Progress& progress) const = 0;
+};
+
+// "reference", "cpu"; "auto" picks cpu. Throws UsageError listing the names (and, for renderers this build lacks,
+// saying so).
+const Renderer& find_renderer(std::string_view name);
+std::vector<std::string> renderer_names();
+
+// Draws at supersampled size where asked, averages, lays the background under: the final picture.
+Image render(const Renderer& renderer, const Scene& scene, const Camera& camera, const Parameters& parameters,
+             RenderStats& stats, const Channels& channels = {}, Progress& progress = no_progress());
+
+}  // namespace atomesh

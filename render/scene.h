@@ -1,0 +1,54 @@
+// Material + Parameters → exactly what one mode needs to be drawn, in float about the scene's centre.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/material.h"
+#include "core/material_file.h"
+#include "core/parameters.h"
+#include "core/progress.h"
+
+namespace atomesh {
+
+// A sphere to draw. Opacity 1 for atoms with a defect, AtomsParameters::regular_opacity for the others.
+struct Ball {
+  Vec3f center;  // about Scene::center
+  float radius;  // Å
+  Vec4f color;   // RGB and opacity
+  Index atom;    // index into Material::atoms
+};
+
+// What is empty is not needed by the mode:
+//   volume_surface: vertices, tetrahedra, colors, surface, normals
+//   volume:         vertices, tetrahedra, scalars
+//   surface, xray:  vertices, surface; surface also normals
+//   atoms:          balls
+// Atoms that fail a cut plane are gone, with every tetrahedron that has one as a vertex; the surface is that of what is
+// left.
+struct Scene {
+  Mode mode = Mode::volume_surface;
+  Vec3 center{0.0};                        // Å, in the file's coordinates; subtract before converting to float
+  Bounds bounds;                           // of the whole uncut sample (so that cutting does not move the camera)
+  std::vector<Vec3f> vertices;             // about center
+  std::vector<Tetrahedron> tetrahedra;     // positively oriented
+  std::vector<Vec4f> colors;               // RGBA of each vertex (seed 5.3.1), clamped to [0,1]
+  std::vector<float> scalars;              // of each vertex, normalised to [0,1]
+  std::vector<Triangle> surface;           // outward
+  std::vector<Index> surface_tetrahedron;  // behind each triangle (index into tetrahedra); empty in surface and xray
+  std::vector<std::uint8_t> surface_face;  // which of its faces
+  std::vector<Vec3f> face_normals;         // of each triangle
+  std::vector<Vec3f> vertex_normals;       // of each vertex; zero inside
+  bool delaunay = false;                   // see TetMesh::delaunay
+  std::vector<Ball> balls;
+};
+
+// Which parts of a .crb the mode (with these cut planes) needs, for read_material().
+MaterialParts parts_needed(const Parameters& parameters);
+
+// Throws Error when the mode needs something the material does not have (naming it). A mesh without tetrahedra (fewer
+// than four atoms, all in a plane) is fine and gives an empty picture.
+Scene make_scene(const Material& material, const Parameters& parameters, Progress& progress = no_progress());
+
+}  // namespace atomesh
