@@ -39,12 +39,16 @@ class Renderer {
                      const Channels& channels, Progress& progress) const = 0;
 };
 
-// "reference", "cpu"; "auto" picks cpu. Throws UsageError listing the names (and, for renderers this build lacks,
-// saying so).
+// "reference", "cpu"; "auto" picks the first of cpu, reference that this build has. Throws UsageError listing the
+// names, UnavailableError (listing them too) for "havs" and "cuda" in a build without them.
 const Renderer& find_renderer(std::string_view name);
 std::vector<std::string> renderer_names();
 
-// Draws at supersampled size where asked, averages, lays the background under: the final picture.
+// The final picture: draws with n×n rays a pixel where asked (Parameters::supersampling; the rays stand on a regular
+// grid in the pixel) and averages premultiplied colours, lays the background under, and divides by the coverage (Image
+// is not premultiplied). With supersampling the channel thickness is the mean of the pixel's rays; depth and id are
+// those of the ray at the pixel's centre (the one right and below of it where n is even). Throws UsageError for a
+// picture without pixels.
 Image render(const Renderer& renderer, const Scene& scene, const Camera& camera, const Parameters& parameters,
              RenderStats& stats, const Channels& channels = {}, Progress& progress = no_progress());
 

@@ -12,7 +12,8 @@
 
 namespace atomesh {
 
-// A sphere to draw. Opacity 1 for atoms with a defect, AtomsParameters::regular_opacity for the others.
+// A sphere to draw. Opacity 1 for atoms with a defect, AtomsParameters::regular_opacity for the others (for all of them
+// where the material has no defect values). Hidden species, radius zero and opacity zero make no ball.
 struct Ball {
   Vec3f center;  // about Scene::center
   float radius;  // Å
@@ -29,17 +30,24 @@ struct Ball {
 // left.
 struct Scene {
   Mode mode = Mode::volume_surface;
-  Vec3 center{0.0};                        // Å, in the file's coordinates; subtract before converting to float
-  Bounds bounds;                           // of the whole uncut sample (so that cutting does not move the camera)
-  std::vector<Vec3f> vertices;             // about center
-  std::vector<Tetrahedron> tetrahedra;     // positively oriented
-  std::vector<Vec4f> colors;               // RGBA of each vertex (seed 5.3.1), clamped to [0,1]
-  std::vector<float> scalars;              // of each vertex, normalised to [0,1]
+  Vec3 center{0.0};  // Å, in the file's coordinates; subtract before converting to float
+  // Of the whole uncut sample, so that cutting does not move the camera; in mode atoms grown by the largest radius, so
+  // that no ball sticks out of the picture. In the file's coordinates.
+  Bounds bounds;
+  std::vector<Vec3f> vertices;          // about center
+  std::vector<Tetrahedron> tetrahedra;  // positively oriented
+  // RGBA of each vertex (seed 5.3.1), clamped to [0,1]. Atoms that share one vertex colour it with the largest of each
+  // of their defect values. A vertex that is no atom, and every vertex of a material without defects, has the base
+  // colour.
+  std::vector<Vec4f> colors;
+  // Of each vertex: the weighted sum of its defect values divided by the largest in the uncut sample; 0 without
+  // defects.
+  std::vector<float> scalars;
   std::vector<Triangle> surface;           // outward
   std::vector<Index> surface_tetrahedron;  // behind each triangle (index into tetrahedra); empty in surface and xray
   std::vector<std::uint8_t> surface_face;  // which of its faces
   std::vector<Vec3f> face_normals;         // of each triangle
-  std::vector<Vec3f> vertex_normals;       // of each vertex; zero inside
+  std::vector<Vec3f> vertex_normals;       // of each vertex, zero inside; empty with flat shading
   bool delaunay = false;                   // see TetMesh::delaunay
   std::vector<Ball> balls;
 };

@@ -1,0 +1,28 @@
+// The parts make_scene() puts together, each a function from the material to one array of the Scene.
+#pragma once
+
+#include <vector>
+
+#include "core/material.h"
+#include "core/parameters.h"
+#include "render/scene.h"
+
+namespace atomesh {
+
+// scene_cuts.cpp
+bool any_cut(const Parameters& parameters);
+// True where every enabled cut plane keeps the point (Å, coordinates of the file).
+bool survives_cuts(const Parameters& parameters, const Vec3& point);
+// The tetrahedra all of whose vertices survive, in the mesh's order.
+std::vector<Tetrahedron> cut_tetrahedra(const TetMesh& mesh, const Parameters& parameters);
+
+// scene_colors.cpp: one value per mesh vertex.
+std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfaceParameters& parameters);
+std::vector<float> vertex_scalars(const Material& material, const VolumeParameters& parameters);
+
+// scene_balls.cpp
+std::vector<Ball> make_balls(const Material& material, const Parameters& parameters, const Vec3& center);
+// Å, over the species of the table that are used, whether shown or not; 0 without atoms.
+double largest_radius(const Atoms& atoms, const AtomsParameters& parameters);
+
+}  // namespace atomesh
