@@ -1,1 +1,171 @@
 #include "preprocess/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "core/surface.h"
+#include "preprocess/assign_scalar.h"
+
+namespace atomesh {
+
+namespace {
+
+// Runs the stages of one pipeline: announces each to the progress (where a cancel takes effect) and writes down how
+// long it took.
+class StageClock {
+ public:
+  StageClock(std::vector<StageTime>& times, Progress& progress) : times_(times), progress_(progress) {}
+
+  template <class Work>
+  auto operator()(const char* name, Work&& work) {
+    progress_.stage(name);
+    const auto start = std::chrono::steady_clock::now();
+    const auto stop = [&] {
+      const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+      times_.push_back({name, elapsed.count()});
+    };
+    if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+      work();
+      stop();
+    } else {
+      auto result = work();
+      stop();
+      return result;
+    }
+  }
+
+ private:
+  std::vector<StageTime>& times_;
+  Progress& progress_;
+};
+
+bool reduces(const ReduceOptions& options) {
+  return !options.mask.empty() || options.keep_every > 1;
+}
+
+std::optional<UnitCell> choose_unit_cell(const std::string& choice, const std::optional<UnitCell>& of_file,
+                                         std::string& source) {
+  std::optional<UnitCell> cell;
+  if (choice == "auto") {
+    cell = of_file;
+  } else if (choice != "none") {
+    cell = read_unit_cell(choice);
+  }
+  source = cell ? "file" : "none";
+  return cell;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+void describe(const std::string& path, const PipelineOptions& options, const PipelineReport& report,
+              Material& material) {
+  Provenance& provenance = material.provenance;
+  provenance.program = "atomesh " ATOMESH_VERSION;
+  provenance.input = std::filesystem::path(path).filename().string();
+  provenance.options = {
+      {"format", report.read.format},
+      {"frame", std::to_string(options.read.frame)},
+      {"type_names", joined(options.read.type_names)},
+      {"mask", joined(options.reduce.mask)},
+      {"keep_every", std::to_string(options.reduce.keep_every)},
+      {"transition_distance", fmt::format("{}", options.reduce.transition_distance)},
+      {"boundary_distance", fmt::format("{}", options.reduce.boundary_distance)},
+      {"mesher", options.tetrahedralize.mesher},
+      {"carve", !options.carve                       ? "off"
+                : options.carve_options.radius > 0.0 ? fmt::format("{}", options.carve_options.radius)
+                                                     : "auto"},
+      {"unit_cell", options.unit_cell},
+      {"neighbourhood", fmt::format("{}", options.defects.neighbourhood)},
+      {"tolerance", fmt::format("{}", options.defects.tolerance)},
+      {"scalar", options.scalar},
+  };
+  const std::size_t tetrahedra = material.mesh.tetrahedra.size();
+  provenance.counts = {
+      {"atoms_read", report.read.atoms},
+      {"skipped", report.read.skipped},
+      {"duplicates", report.read.duplicates},
+      {"masked", report.reduce.masked},
+      {"thinned_out", report.reduce.dropped},
+      {"atoms", material.atoms.size()},
+      {"vertices", material.mesh.vertices.size()},
+      {"merged_vertices", report.tetrahedralize.merged_vertices},
+      {"flat_removed", report.tetrahedralize.flat_removed},
+      {"carved", report.carve.removed},
+      {"tetrahedra", tetrahedra},
+      {"triangles", material.surface.triangles.size()},
+      {"positional_atoms", report.defects.positional_atoms},
+      {"vacancy_atoms", report.defects.vacancy_atoms},
+      {"extra_atoms", report.defects.extra_atoms},
+      {"vacancies", material.defects.vacancies.size()},
+      {"extras", material.defects.extras.size()},
+  };
+}
+
+}  // namespace
+
+Material preprocess(const std::string& path, const PipelineOptions& options, PipelineReport& report,
+                    Progress& progress) {
+  Material material;
+  StageClock stage(material.provenance.stages, progress);
+  const MaterialParts& wanted = options.wanted;
+  report = {};
+
+  {
+    ReadResult read = stage("read_atoms", [&] { return read_atoms(path, options.read, progress); });
+    report.read = std::move(read.report);
+    material.atoms = std::move(read.atoms);
+    material.unit_cell = stage(
+        "find_unit_cell", [&] { return choose_unit_cell(options.unit_cell, read.unit_cell, report.unit_cell_source); });
+  }
+  if (reduces(options.reduce)) {
+    material.atoms =
+        stage("reduce_atoms", [&] { return reduce_atoms(material.atoms, options.reduce, report.reduce, progress); });
+  }
+
+  // The surface is the mesh's boundary, and it tells the defects what lies outside the sample: both need the mesh.
+  if (wanted.tetrahedra || wanted.surface || wanted.defects) {
+    material.mesh = stage("tetrahedralize", [&] {
+      return tetrahedralize(material.atoms, options.tetrahedralize, report.tetrahedralize, progress);
+    });
+    if (options.carve) {
+      material.mesh =
+          stage("carve", [&] { return carve(material.mesh, options.carve_options, report.carve, progress); });
+    }
+    material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh); });
+    stage("measure", [&] {
+      report.volume = volume(material.mesh);
+      report.min_dihedral_deg = min_dihedral_degrees(material.mesh);
+      report.surface_area = area(material.surface, material.mesh.vertices);
+      report.surface_closed = is_closed(material.surface);
+    });
+  }
+
+  if (wanted.defects && !options.scalar.empty()) {
+    material.defects = stage("assign_scalar", [&] { return assign_scalar(material.atoms, options.scalar); });
+  } else if (wanted.defects && material.unit_cell && reduces(options.reduce)) {
+    report.notes.emplace_back(
+        "defects were not quantified: a reduced sample no longer has the crystal's neighbours; choose what to show "
+        "with --scalar");
+  } else if (wanted.defects && material.unit_cell) {
+    material.defects = stage("quantify_defects", [&] {
+      return quantify_defects(material.atoms, *material.unit_cell, material.mesh, material.surface, options.defects,
+                              report.defects, progress);
+    });
+  } else if (wanted.defects) {
+    report.notes.emplace_back(
+        "defects were not quantified: no unit cell is known; give one with --unit-cell, or a value to show with "
+        "--scalar");
+  }
+
+  describe(path, options, report, material);
+  return material;
+}
+
+}  // namespace atomesh

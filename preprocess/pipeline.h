@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/material.h"
+#include "core/material_file.h"
 #include "core/progress.h"
 #include "preprocess/carve.h"
 #include "preprocess/quantify_defects.h"
@@ -19,10 +21,15 @@ struct PipelineOptions {
   TetrahedralizeOptions tetrahedralize;
   bool carve = true;
   CarveOptions carve_options;
-  std::string unit_cell =
-      "auto";  // "auto" (the file's, else none), "none", or the path of a .dat with primitive and basis
+  // "auto" (the file's own, else none), "none", or the path of a .dat with primitive and basis.
+  std::string unit_cell = "auto";
   DefectOptions defects;
-  std::string scalar;  // a column of the file to use as positional defect value instead of quantifying; "" none
+  // What takes the place of the positional defect value instead of quantifying defects: the name of a column of the
+  // file, or values by species, "Ga=0,In=1" (species not named have 0). The smallest value is shifted to zero. "" none.
+  std::string scalar;
+  // What the caller will use. Stages that only make something else are left out: atoms alone need no mesh, a surface
+  // needs no defects.
+  MaterialParts wanted;
 };
 
 struct PipelineReport {
@@ -33,10 +40,15 @@ struct PipelineReport {
   DefectReport defects;
   std::string unit_cell_source = "none";  // "file", "found", "none"
   double volume = 0.0;                    // Å³, after carving
-  double min_dihedral_deg = 0.0;
+  double min_dihedral_deg = 0.0;          // of the carved mesh
+  double surface_area = 0.0;              // Å²
+  bool surface_closed = false;
+  std::vector<std::string> notes;  // what a person should know, one sentence each; the readers' own are in `read`
 };
 
-// Names, times (into Material::provenance.stages) and can cancel each stage.
+// Names, times (into Material::provenance.stages) and can cancel each stage. Apart from those times the result depends
+// only on the file and the options. Throws what the stages throw, and UsageError for a scalar that the file does not
+// have.
 Material preprocess(const std::string& path, const PipelineOptions& options, PipelineReport& report,
                     Progress& progress = no_progress());
 
