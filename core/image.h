@@ -26,12 +26,14 @@ struct Image {
   }
 };
 
-// 8-bit RGB, or RGBA where a pixel is not opaque; `text` becomes tEXt/iTXt chunks (the parameters that made the
-// picture). Written beside and renamed. Throws Error when it cannot be written.
+// 8-bit RGB, or RGBA where a pixel is not opaque, channels rounded to the nearest of 256; `text` becomes iTXt chunks
+// (the parameters that made the picture). Written beside and renamed. Throws Error when it cannot be written.
 void write_png(const std::string& path, const Image& image,
                const std::vector<std::pair<std::string, std::string>>& text = {});
 // Any PNG of 8 or 16 bits, gray, palette or colour. Throws InputError for anything else, truncated or damaged files.
 Image read_png(const std::string& path);
+// The texts of a PNG, in file order. Throws InputError as read_png does.
+std::vector<std::pair<std::string, std::string>> read_png_text(const std::string& path);
 
 struct ImageDifference {
   double max = 0.0;             // largest absolute channel difference, channels in [0,1]

@@ -139,7 +139,7 @@ struct ParameterRow {
   std::string group;  // heading in forms and documentation: "Display", "Lights", "Volume and surface", …
   std::string label;  // "Face alpha constant", as in the manual where it has the entry
   std::string unit;   // "", "Å", "1/Å", "degrees"
-  double min;         // range of a number (and of each component of a colour); ignored for boolean, choice
+  double min;         // range of a number (and of each component of a colour or vector); ignored for boolean, choice
   double max;
   std::vector<std::string> choices;  // of a choice
   std::string help;                  // one or two sentences
@@ -152,11 +152,19 @@ const std::vector<ParameterRow>& parameter_table();
 const ParameterRow& parameter_row(std::string_view key);
 
 // Sets one value from text: "0.3", "true", "smooth", "#rrggbb" or "#rrggbbaa" or "0.1,0.2,0.3[,0.4]" for colours,
-// "x,y,z" for vectors, "viridis" or "0:#00000000 0.5:#ff0000 1:0.1,0.2,0.3,0.4" for colour maps. Throws UsageError with
-// key, text and what was expected (range, choices); `parameters` is then unchanged.
+// "x,y,z" for vectors, "viridis" or "0:#00000000 0.5:#ff0000 1:0.1,0.2,0.3,0.4" for colour maps. "auto" for a species'
+// colour or radius goes back to its own. Throws UsageError with key, text and what was expected (range, choices);
+// `parameters` is then unchanged.
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view text);
 // The value as text that set_parameter reads back to exactly the same value.
 std::string get_parameter(const Parameters& parameters, std::string_view key);
+
+// Every key there is for a sample with these species, in the order of the table.
+std::vector<std::string> parameter_keys(const std::vector<std::string>& species = {});
+// Throws UsageError naming the first value that set_parameter would refuse (a struct can be filled with anything).
+void check_parameters(const Parameters& parameters);
+// The reference documentation: one Markdown table a group, with key, range, default and meaning of each row.
+std::string parameter_documentation();
 
 std::string_view mode_name(Mode mode);       // "volume-surface", "volume", "surface", "xray", "atoms"
 Mode mode_from_name(std::string_view name);  // throws UsageError naming the nearest
