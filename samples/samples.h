@@ -17,16 +17,21 @@ struct SampleOptions {
   std::uint64_t seed = 1;  // of every random choice
 };
 
-// What was planted, and where. Positions in Å, in the coordinates of the file.
+// What was planted, and where. Positions in Å, in the coordinates of the file. Perfect sites are exact sums of the unit
+// cell's vectors and basis from the origin, so what is not listed is on its site to rounding.
 struct SampleTruth {
   struct Site {
     Vec3 position;
     std::string species;
   };
-  std::vector<Site> vacancies;  // lattice sites of the crystal inside the sample that hold no atom of their species
-  std::vector<Index>
-      extras;  // atoms on no site of their species (interstitials, substituted atoms), index into the atoms
-  std::vector<Index> displaced;  // atoms pulled off their site by more than 0.01 Å, ascending
+  // Lattice sites of the crystal inside the sample that hold no atom of their species: empty, or taken by a foreign
+  // one.
+  std::vector<Site> vacancies;
+  // Atoms on no site of their species (interstitials, substituted atoms), index into the atoms, ascending.
+  std::vector<Index> extras;
+  // Atoms on a site of their species but more than 0.01 Å from it, ascending; for a quantum dot all species count, as
+  // its indium (listed neither as extra nor as vacancy) is what the lattice relaxes around.
+  std::vector<Index> displaced;
 };
 
 struct Sample {
