@@ -29,8 +29,11 @@ TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options,
 
 std::vector<std::string> mesher_names();
 
-// The adapters behind it: points (all distinct, in any order) → positively oriented tetrahedra over their indices.
+// The adapters behind it: points (all distinct, in any order) → positively oriented tetrahedra over their indices, in
+// any order.
 std::vector<Tetrahedron> delaunay_cgal(std::span<const Vec3> points, Progress& progress);
-std::vector<Tetrahedron> delaunay_tetgen(std::span<const Vec3> points, Progress& progress);
+// Adds what it had to repair to the report. Throws UnavailableError in a build without TetGen.
+std::vector<Tetrahedron> delaunay_tetgen(std::span<const Vec3> points, TetrahedralizeReport& report,
+                                         Progress& progress);
 
 }  // namespace atomesh
