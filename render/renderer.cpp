@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "render/cpu/reference.h"
 
 namespace atomesh {
 
@@ -18,7 +19,7 @@ struct Entry {
 
 // In the order `auto` prefers them.
 const std::vector<Entry>& registry() {
-  static const std::vector<Entry> entries;
+  static const std::vector<Entry> entries{{"reference", reference_renderer}};
   return entries;
 }
 

@@ -11,6 +11,13 @@
 // Surface crossings (volume_surface): where the ray enters the sample through a front-facing surface triangle, a layer
 // of opacity face_alpha and colour phong(vertex colours interpolated on the face) lies in front of what follows. Back
 // faces contribute nothing. An eye inside the sample starts inside and meets no layer there.
+//
+// Mode surface: the nearest triangle in front of the eye, opaque; seen from behind (by an eye inside the sample) its
+// normal is turned round. Mode xray: thickness = Σ over crossings in front of the eye, depth at exits minus depth at
+// entries, in Å along the ray; opacity min(1, alpha_length · thickness). Mode atoms: the front hits of the balls whose
+// hit lies in front of the eye (an eye inside a ball does not see it), composed by depth, each a layer of the ball's
+// opacity and colour phong(). Materials: materials.h. A ray that meets an edge or a vertex exactly goes by it on the
+// right and, where that decides nothing, above it, in the picture's axes.
 #pragma once
 
 #include <algorithm>
