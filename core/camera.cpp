@@ -94,7 +94,7 @@ void set_view(Parameters& parameters, std::string_view view) {
   double azimuth = 0.0;
   double elevation = 0.0;
   if (comma != std::string_view::npos && parse_number(view.substr(0, comma), azimuth) &&
-      parse_number(view.substr(comma + 1), elevation) && std::abs(elevation) <= 90.0) {
+      parse_number(view.substr(comma + 1), elevation) && std::abs(azimuth) <= 360.0 && std::abs(elevation) <= 90.0) {
     parameters.azimuth = azimuth;
     parameters.elevation = elevation;
     return;
@@ -103,8 +103,8 @@ void set_view(Parameters& parameters, std::string_view view) {
   for (const NamedView& named : named_views) names.push_back(named.name);
   const std::string nearest = nearest_name(view, names);
   throw UsageError("view \"" + std::string(view) +
-                   "\": expected front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees (elevation "
-                   "-90 to 90)" +
+                   "\": expected front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees (-360 to "
+                   "360, -90 to 90)" +
                    (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
 }
 

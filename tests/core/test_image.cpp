@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/error.h"
+#include "core/image.h"
+#include "tests/support/temporary_folder.h"
+
+namespace atomesh {
+namespace {
+
+using test::read_bytes;
+using test::TemporaryFolder;
+using test::write_bytes;
+
+Image random_image(int width, int height, bool opaque, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  Image image(width, height);
+  for (Vec4f& pixel : image.pixels) {
+    for (int c = 0; c < 4; ++c) pixel[c] = static_cast<float>(random() % 256) / 255.0F;
+    if (opaque) pixel.w = 1.0F;
+  }
+  return image;
+}
+
+TEST(Compare, KnownDifferences) {
+  Image a(2, 2);
+  Image b(2, 2);
+  b.at(1, 0) = Vec4f(0.5F, 0, 0, 0);
+  b.at(0, 1) = Vec4f(0, 0, 0, 0.25F);
+  const ImageDifference d = compare_images(a, b, 0.25);
+  EXPECT_DOUBLE_EQ(d.max, 0.5);
+  EXPECT_DOUBLE_EQ(d.rmse, std::sqrt((0.25 + 0.0625) / 16.0));
+  EXPECT_DOUBLE_EQ(d.psnr, -20.0 * std::log10(d.rmse));
+  EXPECT_EQ(d.pixels_over, 1U);  // 0.25 is not above 0.25
+  EXPECT_EQ(compare_images(a, b).pixels_over, 2U);
+  EXPECT_TRUE(std::isinf(compare_images(a, a).psnr));
+  EXPECT_EQ(compare_images(a, a).max, 0.0);
+  EXPECT_EQ(compare_images(Image(), Image()).rmse, 0.0);
+}
+
+TEST(Compare, NotANumberDiffersFromEverything) {
+  Image a(1, 1);
+  Image b(1, 1);
+  b.at(0, 0).x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(compare_images(a, b, 0.5).pixels_over, 1U);
+  EXPECT_EQ(compare_images(b, b).max, 1.0);
+}
+
+TEST(Compare, SizesMustAgree) {
+  try {
+    compare_images(Image(3, 2), Image(2, 3));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("3x2 and 2x3"), std::string::npos);
+  }
+  EXPECT_THROW(difference_picture(Image(1, 1), Image(1, 2)), Error);
+}
+
+TEST(Compare, DifferencePictureIsBlackWhereEqualAndShowsOpacity) {
+  Image a(3, 1);
+  Image b(3, 1);
+  b.at(1, 0) = Vec4f(0.1F, 0, 0, 0);
+  b.at(2, 0) = Vec4f(0, 0, 0, 1);
+  const Image picture = difference_picture(a, b, 5.0);
+  EXPECT_EQ(picture.at(0, 0), Vec4f(0, 0, 0, 1));
+  EXPECT_NEAR(picture.at(1, 0).x, 0.5F, 1e-6F);
+  EXPECT_EQ(picture.at(1, 0).y, 0.0F);
+  EXPECT_EQ(picture.at(2, 0), Vec4f(1, 1, 1, 1));
+}
+
+TEST(Png, EightBitPicturesComeBackExactly) {
+  const TemporaryFolder folder;
+  for (const bool opaque : {true, false}) {
+    for (const auto& [width, height] : {std::pair(1, 1), std::pair(7, 3), std::pair(64, 65)}) {
+      const Image image = random_image(width, height, opaque);
+      write_png(folder.file("a.png"), image);
+      const Image back = read_png(folder.file("a.png"));
+      ASSERT_EQ(back.width, width);
+      ASSERT_EQ(back.height, height);
+      EXPECT_EQ(back.pixels, image.pixels);
+    }
+  }
+  const std::string bytes = read_bytes(folder.file("a.png"));
+  EXPECT_EQ(bytes[25], 6);  // colour type: RGBA, as the last one was not opaque
+  write_png(folder.file("a.png"), random_image(2, 2, true));
+  EXPECT_EQ(read_bytes(folder.file("a.png"))[25], 2);  // RGB
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(Png, ChannelsAreRoundedToTheNearestAndClamped) {
+  const TemporaryFolder folder;
+  Image image(5, 1);
+  image.at(0, 0) = Vec4f(0.49F / 255.0F, 0.51F / 255.0F, 254.49F / 255.0F, 1);
+  image.at(1, 0) = Vec4f(254.51F / 255.0F, 127.4F / 255.0F, 127.6F / 255.0F, 1);
+  image.at(2, 0) = Vec4f(-3, 7, std::numeric_limits<float>::quiet_NaN(), 1);
+  image.at(3, 0) = Vec4f(std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0, 1);
+  write_png(folder.file("a.png"), image);
+  const Image back = read_png(folder.file("a.png"));
+  const auto byte = [&](int column, int channel) { return std::lround(back.at(column, 0)[channel] * 255.0F); };
+  EXPECT_EQ(byte(0, 0), 0);
+  EXPECT_EQ(byte(0, 1), 1);
+  EXPECT_EQ(byte(0, 2), 254);
+  EXPECT_EQ(byte(1, 0), 255);
+  EXPECT_EQ(byte(1, 1), 127);
+  EXPECT_EQ(byte(1, 2), 128);
+  EXPECT_EQ(byte(2, 0), 0);
+  EXPECT_EQ(byte(2, 1), 255);
+  EXPECT_EQ(byte(2, 2), 0);
+  EXPECT_EQ(byte(3, 0), 255);
+  EXPECT_EQ(byte(3, 1), 0);
+}
+
+TEST(Png, TextsComeBackInOrder) {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::string, std::string>> text{
+      {"Software", "atomesh"}, {"mode", "xray"}, {"note", "α = 0.25 1/Å\nsecond line"}, {"empty", ""}};
+  write_png(folder.file("a.png"), random_image(3, 3, true), text);
+  EXPECT_EQ(read_png_text(folder.file("a.png")), text);
+  EXPECT_EQ(read_png(folder.file("a.png")).width, 3);
+  EXPECT_THROW(write_png(folder.file("b.png"), Image(1, 1), {{std::string(80, 'k'), "v"}}), Error);
+  EXPECT_THROW(write_png(folder.file("b.png"), Image(1, 1), {{"", "v"}}), Error);
+  EXPECT_THROW(write_png(folder.file("b.png"), Image(1, 1), {{"k", std::string("a\0b", 3)}}), Error);
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(Png, EmptyPicturesAndUnwritablePlacesAreErrors) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_png(folder.file("a.png"), Image()), Error);
+  EXPECT_THROW(write_png(folder.file("no/such/folder/a.png"), Image(1, 1)), Error);
+  EXPECT_EQ(folder.count(), 0U);
+  EXPECT_THROW(read_png(folder.file("none.png")), InputError);
+  write_bytes(folder.file("empty.png"), "");
+  EXPECT_THROW(read_png(folder.file("empty.png")), InputError);
+  write_bytes(folder.file("text.png"), "this is not a picture at all");
+  EXPECT_THROW(read_png(folder.file("text.png")), InputError);
+}
+
+TEST(Png, EveryTruncationIsAnInputError) {
+  const TemporaryFolder folder;
+  write_png(folder.file("a.png"), random_image(9, 9, false), {{"key", "value"}});
+  const std::string bytes = read_bytes(folder.file("a.png"));
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    write_bytes(folder.file("b.png"), std::string_view(bytes).substr(0, length));
+    EXPECT_THROW(read_png(folder.file("b.png")), InputError) << length;
+  }
+}
+
+// PNG protects each chunk by a checksum; flips in chunks that do not matter for the picture may pass, nothing else may.
+TEST(Png, EveryFlippedBitIsReadTheSameOrAnInputError) {
+  const TemporaryFolder folder;
+  const Image image = random_image(5, 4, true);
+  write_png(folder.file("a.png"), image, {{"key", "value"}});
+  const std::string bytes = read_bytes(folder.file("a.png"));
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    std::string damaged = bytes;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+    write_bytes(folder.file("b.png"), damaged);
+    try {
+      const Image back = read_png(folder.file("b.png"));
+      EXPECT_EQ(back.pixels, image.pixels) << "bit " << bit;
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, bytes.size() * 4);
+}
+
+}  // namespace
+}  // namespace atomesh
