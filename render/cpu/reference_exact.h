@@ -11,4 +11,7 @@ namespace atomesh::reference {
 // intermediate product of three coordinates leaves the range of double.
 int side_of_line(double x, double y, const Vec3& a, const Vec3& b);
 
+// The value of (x, y, 1) · (a × b) to the last bits of double, however much of it cancels.
+double value_at_line(double x, double y, const Vec3& a, const Vec3& b);
+
 }  // namespace atomesh::reference

@@ -21,6 +21,9 @@ std::array<double, 3> weights_at(const Vec3& p, const Vec3& a, const Vec3& b, co
   return {u / sum, v / sum, w / sum};
 }
 
+// Faces that the ray meets at less than this angle (its sine) are located by their exact image instead of their plane.
+constexpr double edge_on = 1e-4;
+
 }  // namespace
 
 Sight::Sight(const Scene& scene, const Camera& camera)
@@ -51,10 +54,11 @@ Vec3 Sight::to_viewer(const PixelRay& ray) const {
 // Edges are taken in one direction only, so that the two triangles at an edge get exactly opposite answers.
 int Sight::side(const PixelRay& ray, Index a, Index b) const {
   if (a > b) return -side(ray, b, a);
-  Vec3 p = view_[a];
-  Vec3 q = view_[b];
-  if (!perspective_) p.z = q.z = 1.0;
-  return side_of_line(ray.x, ray.y, p, q);
+  return side_of_line(ray.x, ray.y, image_point(view_[a]), image_point(view_[b]));
+}
+
+double Sight::image_area(const PixelRay& ray, const Vec3& p, const Vec3& q) const {
+  return value_at_line(ray.x, ray.y, image_point(p), image_point(q));
 }
 
 // The corners are taken in ascending order, so that the two cells at a face get exactly the same depth.
@@ -67,13 +71,20 @@ Crossing Sight::locate(const PixelRay& ray, const Triangle& triangle, bool enter
   const Vec3 origin = perspective_ ? Vec3(0.0) : Vec3(ray.x, ray.y, 0.0);
   const Vec3 direction = perspective_ ? Vec3(ray.x, ray.y, 1.0) : Vec3(0.0, 0.0, 1.0);
   const Vec3 normal = glm::cross(b - a, c - a);
-  const double low = std::min({a.z, b.z, c.z});
-  const double high = std::max({a.z, b.z, c.z});
   const double slope = glm::dot(normal, direction);
-  // A face seen almost edge-on has no well-defined depth, but any between its corners' serves: the cells at both of its
-  // sides take the same one and have the same colour there.
-  const double depth = slope == 0.0 ? 0.5 * (low + high) : std::clamp(glm::dot(normal, a - origin) / slope, low, high);
-  const auto sorted = weights_at(origin + depth * direction, a, b, c, normal);
+  double depth = 0.0;
+  std::array<double, 3> sorted{};
+  if (std::abs(slope) > edge_on * glm::length(normal) * glm::length(direction)) {
+    depth = glm::dot(normal, a - origin) / slope;
+    sorted = weights_at(origin + depth * direction, a, b, c, normal);
+  } else {
+    // The plane tells little about the depth of a face seen (almost) edge-on; the areas of the three triangles it is
+    // divided into in the picture do, taken without rounding.
+    sorted = {std::abs(image_area(ray, b, c)), std::abs(image_area(ray, c, a)), std::abs(image_area(ray, a, b))};
+    const double sum = sorted[0] + sorted[1] + sorted[2];
+    for (double& weight : sorted) weight /= sum;
+    depth = sorted[0] * a.z + sorted[1] * b.z + sorted[2] * c.z;
+  }
   Crossing crossing;
   crossing.depth = depth;
   crossing.entering = entering;

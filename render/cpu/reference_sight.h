@@ -65,6 +65,11 @@ class Sight {
 
  private:
   Vec3 to_view(const Vec3& scene_point) const;
+  // Homogeneous coordinates in the image plane.
+  Vec3 image_point(const Vec3& view_point) const {
+    return perspective_ ? view_point : Vec3(view_point.x, view_point.y, 1.0);
+  }
+  double image_area(const PixelRay& ray, const Vec3& p, const Vec3& q) const;
   int side(const PixelRay& ray, Index a, Index b) const;
   Crossing locate(const PixelRay& ray, const Triangle& triangle, bool entering) const;
   Extent extent_of_points(const Vec3* points, int count) const;

@@ -1,0 +1,108 @@
+#include "tests/render/fixtures.h"
+
+#include <random>
+
+namespace atomesh::test {
+
+namespace {
+
+void finish(Material& material, const std::string& species) {
+  material.atoms.positions = material.mesh.vertices;
+  const std::uint16_t s = material.atoms.add_species(species);
+  material.atoms.species.assign(material.atoms.size(), s);
+  for (std::size_t v = 0; v < material.atoms.size(); ++v) {
+    material.mesh.vertex_atom.push_back(static_cast<Index>(v));
+  }
+  material.surface = extract_surface(material.mesh);
+}
+
+}  // namespace
+
+Material box_material(int nx, int ny, int nz, double step, const std::function<Vec3(const Vec3&)>& move) {
+  Material material;
+  TetMesh& mesh = material.mesh;
+  const auto vertex = [nx, ny](int i, int j, int k) { return static_cast<Index>((k * (ny + 1) + j) * (nx + 1) + i); };
+  for (int k = 0; k <= nz; ++k) {
+    for (int j = 0; j <= ny; ++j) {
+      for (int i = 0; i <= nx; ++i) {
+        const Vec3 p = step * Vec3(i, j, k);
+        mesh.vertices.push_back(move ? move(p) : p);
+      }
+    }
+  }
+  // From corner (0,0,0) to (1,1,1) along the axes in each of the six orders.
+  constexpr int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      for (int i = 0; i < nx; ++i) {
+        for (const auto& order : orders) {
+          int at[3] = {i, j, k};
+          Tetrahedron t{};
+          t[0] = vertex(at[0], at[1], at[2]);
+          for (std::size_t leg = 0; leg < 3; ++leg) {
+            ++at[order[leg]];
+            t[leg + 1] = vertex(at[0], at[1], at[2]);
+          }
+          const auto& p = mesh.vertices;
+          if (signed_volume(p[t[0]], p[t[1]], p[t[2]], p[t[3]]) < 0.0) std::swap(t[2], t[3]);
+          mesh.tetrahedra.push_back(t);
+        }
+      }
+    }
+  }
+  finish(material, "C");
+  return material;
+}
+
+Material one_tetrahedron() {
+  Material material;
+  material.mesh.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  material.mesh.tetrahedra = {{0, 1, 2, 3}};
+  finish(material, "C");
+  return material;
+}
+
+Material atoms_material(const std::vector<std::pair<std::string, Vec3>>& atoms) {
+  Material material;
+  for (const auto& [species, position] : atoms) {
+    material.atoms.species.push_back(material.atoms.add_species(species));
+    material.atoms.positions.push_back(position);
+  }
+  return material;
+}
+
+void add_defects(Material& material, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> value(-0.5F, 1.0F);
+  for (std::size_t a = 0; a < material.atoms.size(); ++a) {
+    material.defects.positional.push_back(std::max(0.0F, value(random)));
+    material.defects.vacancy.push_back(std::max(0.0F, value(random)));
+    material.defects.extra.push_back(std::max(0.0F, value(random)));
+  }
+}
+
+std::function<Vec3(const Vec3&)> shaking(double amplitude, std::uint64_t seed) {
+  return [random = std::mt19937_64(seed),
+          shift = std::uniform_real_distribution<double>(-amplitude, amplitude)](const Vec3& p) mutable {
+    const double x = shift(random);
+    const double y = shift(random);
+    return p + Vec3(x, y, shift(random));
+  };
+}
+
+Parameters looking(Mode mode, std::string_view view, Projection projection) {
+  Parameters parameters;
+  parameters.mode = mode;
+  parameters.projection = projection;
+  set_view(parameters, view);
+  return parameters;
+}
+
+Drawn draw(const Renderer& renderer, const Scene& scene, const Camera& camera, const Parameters& parameters) {
+  Drawn drawn;
+  const Channels channels{&drawn.thickness, &drawn.depth, &drawn.id};
+  drawn.image = renderer.draw(scene, camera, parameters, drawn.stats, channels, no_progress());
+  return drawn;
+}
+
+}  // namespace atomesh::test
