@@ -72,6 +72,21 @@ const std::vector<Entry>& entries() {
         {114221, 1484, 305, 16, 337, 216}},
        8000,
        grow_cacuo2_spiral},
+      {{"quantum-dot",
+        "Quantum dot",
+        86338,
+        "An InAs lens on a wetting layer of one monolayer, buried in GaAs and relaxed by Keating's force field; column "
+        "indium is 1 on indium, else 0 (indium is not listed as a defect)",
+        {84376, 611, 145, 16, 175, 114}},
+       6000,
+       grow_quantum_dot},
+      {{"quantum-dot-alloyed",
+        "Quantum dot, alloyed",
+        125595,
+        "The quantum dot with a random 20 % of the cations of lens and wetting layer indium, the others gallium",
+        {1161757, 730, 196, 16, 182, 181}},
+       6000,
+       grow_quantum_dot_alloyed},
   };
   return table;
 }
