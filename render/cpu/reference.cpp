@@ -43,7 +43,8 @@ Seen see(const View& view, const Candidates& candidates, int column, int row) {
     case Mode::xray:
       return see_xray(view, ray, candidates.triangles.at(column, row));
     case Mode::atoms:
-      return see_balls(view, ray, candidates.balls.at(column, row));
+      return see_balls(view, optics::ball_ray(view.scene, view.sight.camera(), column, row),
+                       candidates.balls.at(column, row));
   }
   return {};
 }

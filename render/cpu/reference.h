@@ -8,6 +8,7 @@
 //     (a ray through a vertex, along an edge, inside a face) are broken as if the ray stood an infinitely small ε
 //     further right and ε² further up. So along every ray the cells join without gap or overlap.
 //   - A segment's integral is converged to the rounding of double, see reference_optics.h.
+// Balls are met by the shared lines of render/shared/ball_ray.h, here tried one by one.
 // It starts from the same Scene in float as the other renderers, so differences to them are arithmetic only.
 // Meant for small scenes: 10⁵ tetrahedra at 256×256 take seconds.
 #pragma once

@@ -154,28 +154,29 @@ Seen see_xray(const View& view, const PixelRay& ray, std::span<const Index> tria
   return seen;
 }
 
-Seen see_balls(const View& view, const PixelRay& ray, std::span<const Index> balls) {
+Seen see_balls(const View& view, const optics::BallRay& ray, std::span<const Index> balls) {
   struct Hit {
-    double depth;
+    double length;
     Index ball;
   };
   std::vector<Hit> hits;
   for (const Index ball : balls) {
-    if (const auto depth = view.sight.cross_ball(ray, view.scene.balls[ball])) hits.push_back({*depth, ball});
+    const double length = optics::length_to_ball(ray, view.scene.balls[ball]);
+    if (std::isfinite(length)) hits.push_back({length, ball});
   }
   std::sort(hits.begin(), hits.end(),
-            [](const Hit& a, const Hit& b) { return std::tie(a.depth, a.ball) < std::tie(b.depth, b.ball); });
+            [](const Hit& a, const Hit& b) { return std::tie(a.length, a.ball) < std::tie(b.length, b.ball); });
   Seen seen;
   for (const Hit& hit : hits) {
     const Ball& ball = view.scene.balls[hit.ball];
-    const Vec3 point = view.sight.point(ray, hit.depth);
+    const Vec3 point = ray.origin + hit.length * ray.direction;
     const Vec3 lit = phong(optics::ball_material(Vec3f(ball.color)), point, glm::normalize(point - Vec3(ball.center)),
-                           view.sight.to_viewer(ray), view.lights);
-    const double opacity = ball.color.a;
+                           -ray.direction, view.lights);
+    const double opacity = static_cast<double>(ball.color.a);
     compose(seen.light, {opacity * lit, 1.0 - opacity});
   }
   if (!hits.empty()) {
-    seen.depth = hits.front().depth;
+    seen.depth = hits.front().length * glm::dot(ray.direction, view.sight.camera().forward);
     seen.id = view.scene.balls[hits.front().ball].atom;
   }
   seen.steps = hits.size();

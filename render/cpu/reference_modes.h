@@ -7,6 +7,7 @@
 #include "render/cpu/reference_optics.h"
 #include "render/cpu/reference_sight.h"
 #include "render/renderer.h"
+#include "render/shared/ball_ray.h"
 
 namespace atomesh::reference {
 
@@ -29,7 +30,7 @@ struct View {
   View(const Scene& s, const Camera& camera, const Parameters& p);
 };
 
-// The stretches of the ray inside cells in front of the eye, by depth, and the length of their union in Å.
+// The stretches of the ray inside cells in front of the eye, by depth.
 struct CellOnRay {
   Index cell;
   CellSegment segment;  // clipped to depths ≥ 0
@@ -46,6 +47,6 @@ std::vector<TriangleOnRay> triangles_on_ray(const View& view, const PixelRay& ra
 Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> cells, std::span<const Index> triangles);
 Seen see_surface(const View& view, const PixelRay& ray, std::span<const Index> triangles);
 Seen see_xray(const View& view, const PixelRay& ray, std::span<const Index> triangles);
-Seen see_balls(const View& view, const PixelRay& ray, std::span<const Index> balls);
+Seen see_balls(const View& view, const optics::BallRay& ray, std::span<const Index> balls);
 
 }  // namespace atomesh::reference

@@ -120,19 +120,6 @@ std::optional<CellSegment> Sight::cross_cell(const PixelRay& ray, const Tetrahed
   return segment;
 }
 
-std::optional<double> Sight::cross_ball(const PixelRay& ray, const Ball& ball) const {
-  const Vec3 center = to_view(Vec3(ball.center));
-  const Vec3 origin = perspective_ ? Vec3(0.0) : Vec3(ray.x, ray.y, 0.0);
-  const Vec3 direction = glm::normalize(perspective_ ? Vec3(ray.x, ray.y, 1.0) : Vec3(0.0, 0.0, 1.0));
-  const double middle = glm::dot(center - origin, direction);
-  const Vec3 across = center - origin - middle * direction;
-  const double left = static_cast<double>(ball.radius) * ball.radius - glm::dot(across, across);
-  if (left < 0.0) return std::nullopt;
-  const double length = middle - std::sqrt(left);
-  if (length <= 0.0) return std::nullopt;
-  return length / stretch(ray);
-}
-
 Sight::Extent Sight::extent_of_points(const Vec3* points, int count) const {
   double min_x = std::numeric_limits<double>::infinity();
   double min_y = min_x;

@@ -1,4 +1,4 @@
-// The judge's geometry: which faces, cells and balls a pixel's ray meets, and where. Everything in double; what decides
+// The judge's geometry: which faces and cells a pixel's ray meets, and where. Everything in double; what decides
 // "meets or not" is exact, so a ray through a vertex, along an edge or inside a face meets every cell exactly once.
 #pragma once
 
@@ -52,9 +52,6 @@ class Sight {
   // The whole line through the ray is tested: depths can be negative (behind the eye).
   std::optional<Crossing> cross_triangle(const PixelRay& ray, const Triangle& triangle) const;
   std::optional<CellSegment> cross_cell(const PixelRay& ray, const Tetrahedron& cell) const;
-  // Depth of the nearer intersection; nothing where the ray passes by or that intersection is not in front of the eye.
-  std::optional<double> cross_ball(const PixelRay& ray, const Ball& ball) const;
-
   // Conservative extent of a set of view points on the picture, in pixels; the whole picture where one is not in front
   // of the eye.
   struct Extent {
