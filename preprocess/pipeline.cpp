@@ -138,7 +138,9 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
       material.mesh =
           stage("carve", [&] { return carve(material.mesh, options.carve_options, report.carve, progress); });
     }
-    material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh); });
+    if (wanted.surface || wanted.defects) {
+      material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh); });
+    }
     stage("measure", [&] {
       report.volume = volume(material.mesh);
       report.min_dihedral_deg = min_dihedral_degrees(material.mesh);

@@ -1,0 +1,135 @@
+// atomesh: reads the command line, runs one subcommand, turns every error into a message and an exit code.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/session.h"
+#include "core/error.h"
+
+namespace atomesh::cli {
+namespace {
+
+struct Subcommand {
+  const char* name;
+  const char* description;
+  Command (*add)(CLI::App& app);
+};
+
+constexpr Subcommand subcommands[] = {
+    {"sample", "Grow a sample material with known defects", add_sample},
+    {"compare", "Compare two pictures", add_compare},
+};
+
+constexpr int exit_usage = 1;
+constexpr int exit_unavailable = 3;
+
+int fail(const std::string& message, int exit_code) {
+  std::fprintf(stderr, "atomesh: %s\n", message.c_str());
+  return exit_code;
+}
+
+std::vector<std::string> subcommand_names() {
+  std::vector<std::string> names;
+  for (const Subcommand& subcommand : subcommands) names.emplace_back(subcommand.name);
+  return names;
+}
+
+// "--mod" → "--mode", from the options of the subcommand in use.
+std::string nearest_option(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return nearest_name(word.substr(0, word.find('=')), names);
+}
+
+int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::vector<std::string> unknown = app.remaining(true);
+  if (chosen.empty()) {
+    if (unknown.empty()) return fail(std::string(error.what()) + "\nTry: atomesh --help", exit_usage);
+    const std::string& word = unknown.front();
+    if (std::filesystem::exists(word)) {
+      return fail("this version has no window to show " + word + " in; draw a picture of it with\n  atomesh render " +
+                      word + " -o picture.png",
+                  exit_unavailable);
+    }
+    const std::string nearest = nearest_name(word, subcommand_names());
+    return fail("no subcommand \"" + word + "\"" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") +
+                    "\nTry: atomesh --help",
+                exit_usage);
+  }
+  const CLI::App& subcommand = *chosen.front();
+  std::string message = subcommand.get_name() + ": ";
+  if (unknown.empty()) {
+    message += error.what();
+  } else {
+    message += "unexpected argument \"" + unknown.front() + "\"";
+    const std::string nearest = unknown.front().starts_with("-") ? nearest_option(subcommand, unknown.front()) : "";
+    if (!nearest.empty()) message += "; did you mean " + nearest + "?";
+  }
+  return fail(message + "\nTry: atomesh " + subcommand.get_name() + " --help", exit_usage);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "atomesh shows what is buried in a sample: atoms -> volume, surface, crystal defects -> pictures.\n"
+      "Exit codes: 0 done, 1 wrong use, 2 bad input, 3 could not be done here, 4 comparison failed, "
+      "130 cancelled.",
+      "atomesh");
+  app.set_version_flag("--version", "atomesh " ATOMESH_VERSION);
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Example:\n"
+      "  atomesh sample nacl-cracked -o nacl.dat\n"
+      "  atomesh preprocess nacl.dat -o nacl.crb\n"
+      "  atomesh render nacl.crb -o nacl.png\n");
+
+  Session session;
+  std::vector<std::pair<CLI::App*, Command>> commands;
+  for (const Subcommand& subcommand : subcommands) {
+    CLI::App* words = app.add_subcommand(subcommand.name, subcommand.description);
+    commands.emplace_back(words, subcommand.add(*words));
+    session.add_options(*words);
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    return report_parse_error(app, error);
+  }
+  for (const auto& [words, command] : commands) {
+    if (!words->parsed()) continue;
+    session.begin();
+    return command(session);
+  }
+  return fail("this version has no window yet; the subcommands work without one: " +
+                  CLI::detail::join(subcommand_names(), ", ") + "\nTry: atomesh --help",
+              exit_unavailable);
+}
+
+}  // namespace
+}  // namespace atomesh::cli
+
+int main(int argc, char** argv) {
+  using atomesh::cli::fail;
+  try {
+    return atomesh::cli::run(argc, argv);
+  } catch (const atomesh::Error& error) {
+    return fail(error.what(), error.exit_code());
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory; try a thinned-out sample (--keep-every, --mask) or a machine with more",
+                atomesh::cli::exit_unavailable);
+  } catch (const std::exception& error) {
+    return fail(std::string("stopped by an error nobody expected: ") + error.what() +
+                    "; please report it with the command line and the file",
+                atomesh::cli::exit_unavailable);
+  }
+}

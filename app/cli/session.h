@@ -1,0 +1,51 @@
+// What every subcommand shares: --threads, --json, text for a person, progress on a terminal, Ctrl-C.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+#include "app/cli/json.h"
+#include "app/cli/progress_bar.h"
+#include "core/progress.h"
+
+namespace CLI {
+class App;
+}
+
+namespace atomesh::cli {
+
+class Session {
+ public:
+  Session();
+
+  // Adds --threads and --json to a subcommand.
+  void add_options(CLI::App& app);
+  // After the command line was read: applies --threads and lets SIGINT and SIGTERM cancel progress().
+  void begin();
+
+  Progress& progress() { return progress_; }
+
+  // A line for a person on standard output; nothing when --json - has taken it.
+  template <class... Args>
+  void print(fmt::format_string<Args...> format, Args&&... args) {
+    print_text(fmt::format(format, std::forward<Args>(args)...));
+  }
+  void print_text(std::string_view text);
+  // "note: …" on standard error: what the user should know although the work goes on.
+  void note(std::string_view text);
+  // To where --json says; nothing without it. A file appears whole or not at all.
+  void write_json(const Json& json);
+  bool json_wanted() const { return !json_path_.empty(); }
+  // Takes the progress bar off the terminal.
+  void clear_progress() { bar_.clear(); }
+
+ private:
+  int threads_ = 0;
+  std::string json_path_;
+  ProgressBar bar_;
+  Progress progress_;
+};
+
+}  // namespace atomesh::cli

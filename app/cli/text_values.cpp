@@ -1,0 +1,33 @@
+#include "app/cli/text_values.h"
+
+#include "core/error.h"
+#include "core/text_file.h"
+
+namespace atomesh::cli {
+
+std::pair<int, int> parse_size(const std::string& text) {
+  constexpr std::int64_t largest = 32768;
+  const std::size_t cross = text.find('x');
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  if (cross == std::string::npos || !parse_integer(text.substr(0, cross), width) ||
+      !parse_integer(text.substr(cross + 1), height) || width < 1 || height < 1 || width > largest ||
+      height > largest) {
+    throw UsageError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 32768, got \"" + text + "\"");
+  }
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+double parse_tolerance(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  double value = 0.0;
+  double divisor = 1.0;
+  const bool number = parse_real(text.substr(0, slash), value) &&
+                      (slash == std::string::npos || parse_real(text.substr(slash + 1), divisor));
+  if (!number || divisor <= 0.0 || value < 0.0 || value / divisor > 1.0) {
+    throw UsageError("--tolerance: expected a number from 0 to 1 or a fraction like 2/255, got \"" + text + "\"");
+  }
+  return value / divisor;
+}
+
+}  // namespace atomesh::cli

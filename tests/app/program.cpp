@@ -1,0 +1,98 @@
+#include "tests/app/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+namespace atomesh::testing {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+[[noreturn]] void become(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& out,
+                         const fs::path& err) {
+  const auto redirect = [](const char* file, int flags, int to) {
+    const int descriptor = open(file, flags, 0600);
+    if (descriptor < 0 || dup2(descriptor, to) < 0) _exit(126);
+  };
+  redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+  redirect(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
+  redirect(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
+  if (chdir(folder.c_str()) != 0) _exit(126);
+  std::vector<char*> words{const_cast<char*>("atomesh")};
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  execv(ATOMESH_PROGRAM, words.data());
+  _exit(127);
+}
+
+Outcome run_in(const fs::path& folder, const std::vector<std::string>& arguments, int interrupt_after_ms) {
+  // Beside the folder, so that a test of what is left in it does not see them.
+  const fs::path out = folder.string() + ".out";
+  const fs::path err = folder.string() + ".err";
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("fork failed");
+  if (child == 0) become(arguments, folder, out, err);
+  if (interrupt_after_ms >= 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(interrupt_after_ms));
+    kill(child, SIGINT);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(out), text_of(err)};
+  fs::remove(out);
+  fs::remove(err);
+  return outcome;
+}
+
+}  // namespace
+
+Workplace::Workplace() {
+  std::string name = (fs::temp_directory_path() / "atomesh-test-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
+  folder_ = name;
+}
+
+Workplace::~Workplace() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+Outcome Workplace::run(const std::vector<std::string>& arguments) const {
+  return run_in(folder_, arguments, -1);
+}
+
+Outcome Workplace::run_interrupted(const std::vector<std::string>& arguments, int delay_ms) const {
+  return run_in(folder_, arguments, delay_ms);
+}
+
+std::string Workplace::read(const std::string& name) const {
+  return text_of(path(name));
+}
+
+void Workplace::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path(name), std::ios::binary) << text;
+}
+
+std::vector<std::string> Workplace::files() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace atomesh::testing

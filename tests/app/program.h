@@ -1,0 +1,40 @@
+// Runs the program as a user does, in a folder of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace atomesh::testing {
+
+struct Outcome {
+  int exit_code = -1;  // 128 + signal when a signal ended it
+  std::string out;
+  std::string err;
+};
+
+// A fresh temporary folder in which atomesh is run; removed at the end.
+class Workplace {
+ public:
+  Workplace();
+  ~Workplace();
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+
+  // Runs `atomesh arguments…` in the folder. Standard input is empty.
+  Outcome run(const std::vector<std::string>& arguments) const;
+  // The same, interrupted (SIGINT) after `delay_ms`.
+  Outcome run_interrupted(const std::vector<std::string>& arguments, int delay_ms) const;
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  bool exists(const std::string& name) const { return std::filesystem::exists(path(name)); }
+  std::string read(const std::string& name) const;
+  void write(const std::string& name, const std::string& text) const;
+  // Names of everything in the folder, sorted.
+  std::vector<std::string> files() const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace atomesh::testing
