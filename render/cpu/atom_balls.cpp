@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -91,7 +92,7 @@ void take_proposal(const RTCFilterFunctionNArguments* args) {
     const Ball& ball = (*packet.balls)[index];
     BallHits& hits = packet.hits[lane];
     const double length = optics::length_to_ball(packet.rays[lane], ball);
-    if (length < hits.reach()) hits.add({length, index, static_cast<double>(ball.color.a)});
+    if (std::isfinite(length)) hits.add({length, index, static_cast<double>(ball.color.a)});
     if (std::isinf(hits.reach())) {
       args->valid[i] = 0;
     } else {
