@@ -51,7 +51,7 @@ struct Atoms {
   std::uint16_t add_species(std::string_view name);
   // nullptr when there is no such column.
   const Column* find_column(std::string_view name) const;
-  // The atoms whose index is in `kept` (ascending), with their columns and ids; table and box unchanged.
+  // The atoms kept[0], kept[1], … in that order, with their columns and ids; table and box unchanged.
   Atoms subset(const std::vector<Index>& kept) const;
 };
 

@@ -21,9 +21,11 @@ struct Format {
   ReadResult (*read)(const Input&);
 };
 
-constexpr std::array<Format, 2> formats{{
+constexpr std::array<Format, 4> formats{{
     {"dat", ".dat", reading::read_dat},
     {"xyz", ".xyz .extxyz", reading::read_xyz},
+    {"lammps-data", ".data .lmp .lammps", reading::read_lammps_data},
+    {"lammps-dump", ".dump .lammpstrj", reading::read_lammps_dump},
 }};
 
 const Format& format_named(std::string_view name) {
