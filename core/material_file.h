@@ -1,19 +1,21 @@
 // .crb and .crt: a Material on disk. Layout in crb_format.h.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/material.h"
 #include "core/progress.h"
 
 namespace atomesh {
 
-// Which parts of a file to read; what is not read stays empty.
+// Which parts of a file to read; what is not read stays empty. The list of species, the unit cell, TetMesh::delaunay
+// and the provenance are small and always read.
 struct MaterialParts {
-  bool atoms = true;  // positions, species, ids, columns, box
-  bool tetrahedra = true;
-  bool surface = true;
+  bool atoms = true;       // positions, species, ids, columns, box
+  bool tetrahedra = true;  // with the vertices
+  bool surface = true;     // with the vertices; Surface::tetrahedron and face only beside the tetrahedra
   bool defects = true;
 };
 
@@ -25,8 +27,8 @@ Material read_material(const std::string& path, const MaterialParts& parts = {},
 struct WriteOptions {
   bool compress = true;  // zstd in .crb
 };
-// Format by extension, .crb or .crt; throws UsageError for another. Written beside and renamed. The same material
-// always gives the same bytes.
+// Format by extension, .crb or .crt; throws UsageError for another. Throws Error for a material that could not be read
+// back (find_problem in check_material.h). Written beside and renamed. The same material always gives the same bytes.
 void write_material(const std::string& path, const Material& material, const WriteOptions& options = {},
                     Progress& progress = no_progress());
 
@@ -38,7 +40,7 @@ struct SectionInfo {
   std::uint64_t bytes = 0;         // uncompressed
   std::uint64_t stored_bytes = 0;  // in the file
 };
-// The sections of a .crb, in file order (for `info`).
+// The sections of a .crb, in file order (for `info`). Throws InputError for any other file.
 std::vector<SectionInfo> list_sections(const std::string& path);
 
 }  // namespace atomesh

@@ -1,0 +1,75 @@
+#include "core/material_file.h"
+
+#include <algorithm>
+
+#include "core/check_material.h"
+#include "core/crb_format.h"
+#include "core/crb_material.h"
+#include "core/crt_material.h"
+#include "core/error.h"
+#include "core/text_file.h"
+
+namespace atomesh {
+
+namespace {
+
+enum class Kind { crb, crt, other };
+
+// By the first bytes; a file cut off within them still counts as what it began to be.
+Kind kind_of(const std::string& path) {
+  const MappedFile file(path);
+  const std::string_view bytes = file.bytes();
+  if (!bytes.empty() && bytes.starts_with(crb_magic.substr(0, bytes.size()))) return Kind::crb;
+  std::string_view text = bytes.substr(0, 4096);
+  LineReader lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    const std::string_view field = next_field(line);
+    if (field.empty() || field[0] == '#') continue;
+    return field == crt_magic ? Kind::crt : Kind::other;
+  }
+  return Kind::other;
+}
+
+}  // namespace
+
+Material read_material(const std::string& path, const MaterialParts& parts, Progress& progress) {
+  progress.stage("read");
+  switch (kind_of(path)) {
+    case Kind::crb:
+      return read_crb(path, parts, progress);
+    case Kind::crt:
+      return read_crt(path, parts, progress);
+    case Kind::other:
+      break;
+  }
+  throw InputError(path, 0, "neither a .crb nor a .crt file (its first bytes say so)");
+}
+
+void write_material(const std::string& path, const Material& material, const WriteOptions& options,
+                    Progress& progress) {
+  const bool binary = path.ends_with(".crb");
+  if (!binary && !path.ends_with(".crt")) {
+    throw UsageError(path +
+                     ": a material is written as .crb (binary) or .crt (text); give the file one of these endings");
+  }
+  if (const auto problem = find_problem(material, counts_of(material))) {
+    throw Error(path + ": this material cannot be written: " + problem->section + ": " + problem->what);
+  }
+  progress.stage("write");
+  if (binary) {
+    write_crb(path, material, options.compress, progress);
+  } else {
+    write_crt(path, material, progress);
+  }
+}
+
+bool is_material_file(const std::string& path) {
+  return kind_of(path) != Kind::other;
+}
+
+std::vector<SectionInfo> list_sections(const std::string& path) {
+  return list_crb_sections(path);
+}
+
+}  // namespace atomesh
