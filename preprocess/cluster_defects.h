@@ -1,7 +1,7 @@
 // Defective atoms and sites gathered into clusters a person can check one by one.
 #pragma once
 
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/material.h"
@@ -21,10 +21,13 @@ struct DefectCluster {
 };
 
 std::string_view defect_kind_name(DefectKind kind);  // "vacancy", "extra", "positional", "mixed"
+// Throws UsageError naming the nearest.
 DefectKind defect_kind_from_name(std::string_view name);
 
-// Atoms whose values are not zero are joined when closer than `distance` (0: 1.3 × the median nearest-neighbour
-// distance), through periodic boundaries; sorted by number of atoms, largest first.
+// Atoms whose values are not zero, extra atoms and vacancies are joined when closer than `distance` (Å; 0: 1.3 × the
+// median nearest-neighbour distance), through periodic boundaries; sorted by number of atoms, largest first. A cluster
+// is named by the sites in it (mixed: both vacancies and extra atoms), one without sites by its largest values. The
+// centre is that of the members' bounding box. Throws UsageError for a distance that is negative or no number.
 std::vector<DefectCluster> cluster_defects(const Material& material, double distance = 0.0);
 
 }  // namespace atomesh

@@ -129,8 +129,8 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
         stage("reduce_atoms", [&] { return reduce_atoms(material.atoms, options.reduce, report.reduce, progress); });
   }
 
-  // The surface is the mesh's boundary, and it tells the defects what lies outside the sample: both need the mesh.
-  if (wanted.tetrahedra || wanted.surface || wanted.defects) {
+  // The surface is the boundary of the mesh. Defects need neither.
+  if (wanted.tetrahedra || wanted.surface) {
     material.mesh = stage("tetrahedralize", [&] {
       return tetrahedralize(material.atoms, options.tetrahedralize, report.tetrahedralize, progress);
     });
@@ -157,8 +157,7 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
         "with --scalar");
   } else if (wanted.defects && material.unit_cell) {
     material.defects = stage("quantify_defects", [&] {
-      return quantify_defects(material.atoms, *material.unit_cell, material.mesh, material.surface, options.defects,
-                              report.defects, progress);
+      return quantify_defects(material.atoms, *material.unit_cell, options.defects, report.defects, progress);
     });
   } else if (wanted.defects) {
     report.notes.emplace_back(

@@ -1,18 +1,20 @@
 // Atoms + UnitCell → Defects (seed, appendix A.3), with the sites of what is missing and what is too much.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/atoms.h"
 #include "core/defects.h"
 #include "core/progress.h"
-#include "core/surface.h"
-#include "core/tet_mesh.h"
 #include "core/unit_cell.h"
 
 namespace atomesh {
 
 struct DefectOptions {
   double neighbourhood = 1.0;  // × the longest primitive vector = neighbourhood radius
-  double tolerance = 0.0;  // Å within which an atom matches a site; 0: a fraction of the nearest-neighbour distance
+  // Å within which an atom matches a site; 0: 0.3 × the nearest-neighbour distance. Above 0.45 × it is limited.
+  double tolerance = 0.0;
 };
 
 struct DefectReport {
@@ -24,9 +26,21 @@ struct DefectReport {
   std::vector<std::string> notes;  // e.g. that the cell does not fit the sample
 };
 
-// `mesh` (carved) and `surface` tell inside from outside; both may be empty (then the sample has no inside and only
-// periodic neighbours count). Same answer at any thread count. Throws Error for a singular or inconsistent unit cell.
-Defects quantify_defects(const Atoms& atoms, const UnitCell& cell, const TetMesh& mesh, const Surface& surface,
-                         const DefectOptions& options, DefectReport& report, Progress& progress = no_progress());
+// Compares every atom's neighbourhood with the perfect crystal's (the cell's own orientation; its origin does not
+// matter) and fills the values of core/defects.h:
+// - Neighbours within the radius count, shells exactly at it included. Matching looks beyond the radius, so nothing
+//   near the ends of the vectors is counted by accident.
+// - positional: displacements up to max(0.2 % of the nearest-neighbour distance, 0.005 Å) are the rounding of a file
+//   (three decimals or more, cell included) and count as zero.
+// - vacancy: entries whose occupant was displaced by more than the tolerance, and entries that lead to a vacancy site.
+//   Entries that lead anywhere else lie outside the sample and do not count. No mesh is needed to tell: a vacancy's
+//   own first shells are mostly filled, a site outside the sample has at most what a half-space holds.
+// - extra: neighbours that fit no entry; an atom that is on no site itself has the value 1.
+// Atoms of a species the cell lacks are extra. When the cell does not fit the sample (matched_fraction below 0.5) no
+// sites are reported and a note says so.
+// Same answer at any number of threads. Throws Error for a singular or inconsistent unit cell, UsageError for options
+// out of range.
+Defects quantify_defects(const Atoms& atoms, const UnitCell& cell, const DefectOptions& options, DefectReport& report,
+                         Progress& progress = no_progress());
 
 }  // namespace atomesh

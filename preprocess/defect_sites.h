@@ -1,0 +1,58 @@
+// From what single atoms miss and find too much to sites: where a vacancy is, and which atoms are extra.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/defects.h"
+#include "core/progress.h"
+#include "preprocess/feature_vectors.h"
+#include "preprocess/neighbour_grid.h"
+
+namespace atomesh {
+
+// One atom whose surroundings are not the perfect crystal's. `missing` are entries of its kind where nobody is,
+// `strays` slots of neighbours that fit no entry and are nobody's displaced occupant.
+struct Misfit {
+  Index slot;
+  std::uint16_t kind;  // no_kind for an atom on no site: it misses nothing and has no strays
+  Vec3 site;           // Å, where its surroundings say it should be
+  std::size_t first_missing, missing;
+  std::size_t first_stray, strays;
+};
+
+// In the order of the grid's home slots.
+struct Misfits {
+  std::vector<Misfit> atoms;
+  std::vector<std::uint32_t> missing;
+  std::vector<Index> strays;
+
+  std::span<const std::uint32_t> missing_of(const Misfit& m) const {
+    return {&missing[0] + m.first_missing, m.missing};
+  }
+  std::span<const Index> strays_of(const Misfit& m) const { return {&strays[0] + m.first_stray, m.strays}; }
+};
+
+// The sample as the search for sites sees it.
+struct SiteSearch {
+  const Atoms& atoms;
+  const FeatureSet& features;
+  const NeighbourGrid& grid;
+  const std::vector<std::uint8_t>& reliable;  // of each atom: most of its near neighbours are where they should be
+  const Misfits& misfits;
+};
+
+// Reliable atoms vote for the near entries they miss; votes for one place make a candidate. Candidates are judged by
+// the void they belong to: empty sites linked to their neighbours. A vacancy lies in a closed void of at most 64
+// sites, one of which at least is enclosed (SiteKind::enclosed of its near sites hold an atom); most of the reliable
+// atoms next to it vote for it and no atom of its species is within the pair distance. A void that goes on is the
+// outside of the sample, however its surface is shaped, so an atom missing from the outermost layer is no vacancy. A
+// place that an atom of another species took needs no closed void. Sorted by position (z, then y, then x). `votes`
+// is left for the caller to refine: here it counts the near atoms.
+std::vector<VacancySite> find_vacancies(const SiteSearch& search, Progress& progress);
+
+// Atoms of a species that the unit cell lacks, and atoms that most of the reliable atoms near them cannot place.
+// Ascending; an interstitial, a substituted atom, the second atom on one site.
+std::vector<ExtraAtom> find_extras(const SiteSearch& search, Progress& progress);
+
+}  // namespace atomesh

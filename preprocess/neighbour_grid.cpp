@@ -1,0 +1,277 @@
+#include "preprocess/neighbour_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace atomesh {
+
+namespace {
+
+constexpr std::uint64_t no_key = ~std::uint64_t{0};
+// Cells an axis may have: three cell numbers fit one key, and their product never overflows.
+constexpr std::int64_t most_cells = std::int64_t{1} << 20;
+constexpr double border = 1e-9;
+
+std::uint64_t spread(std::uint64_t key) {
+  key *= 0x9E3779B97F4A7C15ULL;
+  return key ^ key >> 29;
+}
+
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+NeighbourGrid::NeighbourGrid(std::span<const Vec3> points, const Box& box, double reach, double cell)
+    : periodic_(box.any_periodic()), box_(box), edge_(cell) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!finite(points[i])) throw Error("atom " + std::to_string(i + 1) + " has a position that is not finite");
+  }
+  if (periodic_) {
+    const double volume = std::abs(box.volume());
+    const double product = glm::length(box.vectors[0]) * glm::length(box.vectors[1]) * glm::length(box.vectors[2]);
+    if (!(volume > 1e-9 * product) || !std::isfinite(product)) {
+      throw Error("the box is periodic but its vectors span no volume; give three independent vectors");
+    }
+    to_fraction_ = glm::inverse(box.matrix());
+  }
+  x_.reserve(points.size());
+  y_.reserve(points.size());
+  z_.reserve(points.size());
+  for (const Vec3& p : points) {
+    const Vec3 q = wrap(p);
+    x_.push_back(q.x);
+    y_.push_back(q.y);
+    z_.push_back(q.z);
+  }
+  point_.resize(points.size());
+  std::iota(point_.begin(), point_.end(), Index{0});
+  if (periodic_) add_images(points, reach);
+  sort_into_cells(points.size());
+}
+
+Vec3 NeighbourGrid::wrap(const Vec3& p) const {
+  if (!periodic_) return p;
+  const Vec3 fraction = to_fraction_ * (p - box_.origin);
+  Vec3 wrapped = p;
+  for (int k = 0; k < 3; ++k) {
+    if (box_.periodic[k]) wrapped -= std::floor(fraction[k] + border) * box_.vectors[k];
+  }
+  return wrapped;
+}
+
+Vec3 NeighbourGrid::nearest_image(const Vec3& d) const {
+  if (!periodic_) return d;
+  const Vec3 fraction = to_fraction_ * d;
+  Vec3 nearest = d;
+  for (int k = 0; k < 3; ++k) {
+    if (box_.periodic[k]) nearest -= std::round(fraction[k]) * box_.vectors[k];
+  }
+  return nearest;
+}
+
+void NeighbourGrid::add_images(std::span<const Vec3> points, double reach) {
+  std::array<double, 3> margin{0, 0, 0};  // reach as a fraction of the box's width between its faces
+  std::array<int, 3> images{0, 0, 0};
+  double count = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    if (!box_.periodic[k]) continue;
+    // Rows of the inverse are the reciprocal vectors; their length is one over the distance of the faces.
+    margin[k] = reach * glm::length(Vec3(to_fraction_[0][k], to_fraction_[1][k], to_fraction_[2][k])) + 2 * border;
+    count *= 2.0 * std::ceil(margin[k]) + 1.0;
+    if (!(count < 100000.0)) {
+      throw Error("the periodic box is too thin for a neighbourhood of " + std::to_string(reach) +
+                  " Å; repeat it along its short axes");
+    }
+    images[k] = static_cast<int>(std::ceil(margin[k]));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 home(x_[i], y_[i], z_[i]);
+    const Vec3 fraction = to_fraction_ * (home - box_.origin);
+    for (int a = -images[0]; a <= images[0]; ++a) {
+      for (int b = -images[1]; b <= images[1]; ++b) {
+        for (int c = -images[2]; c <= images[2]; ++c) {
+          const std::array<int, 3> shift{a, b, c};
+          bool near = a != 0 || b != 0 || c != 0;
+          for (int k = 0; near && k < 3; ++k) {
+            if (!box_.periodic[k]) continue;
+            const double f = fraction[k] + shift[k];
+            near = f >= -margin[k] && f <= 1.0 + margin[k];
+          }
+          if (!near) continue;
+          const Vec3 image = home + static_cast<double>(a) * box_.vectors[0] +
+                             static_cast<double>(b) * box_.vectors[1] + static_cast<double>(c) * box_.vectors[2];
+          x_.push_back(image.x);
+          y_.push_back(image.y);
+          z_.push_back(image.z);
+          point_.push_back(static_cast<Index>(i));
+        }
+      }
+    }
+  }
+  if (point_.size() >= no_index) throw UnavailableError("too many atoms with their periodic images: over 2^32 - 2");
+}
+
+void NeighbourGrid::sort_into_cells(std::size_t points) {
+  const std::size_t slots = point_.size();
+  Bounds bounds;
+  for (std::size_t s = 0; s < slots; ++s) bounds.add(Vec3(x_[s], y_[s], z_[s]));
+  home_.clear();
+  if (slots == 0) {
+    start_.assign(2, 0);
+    return;
+  }
+  min_ = bounds.min;
+  const Vec3 extent = bounds.extent();
+  edge_ = std::max({edge_, extent.x / static_cast<double>(most_cells - 2),
+                    extent.y / static_cast<double>(most_cells - 2), extent.z / static_cast<double>(most_cells - 2)});
+  for (int k = 0; k < 3; ++k) cells_[k] = static_cast<std::int64_t>(extent[k] / edge_) + 1;
+  std::vector<std::uint64_t> key(slots);
+  for (std::size_t s = 0; s < slots; ++s) {
+    const auto cell_of = [&](double v, int k) {
+      return std::min(static_cast<std::int64_t>((v - min_[k]) / edge_), cells_[k] - 1);
+    };
+    key[s] =
+        static_cast<std::uint64_t>((cell_of(z_[s], 2) * cells_[1] + cell_of(y_[s], 1)) * cells_[0] + cell_of(x_[s], 0));
+  }
+  // new_order[n] is the old slot that becomes slot n; equal keys keep their order.
+  std::vector<Index> order(slots);
+  const std::uint64_t all = static_cast<std::uint64_t>(cells_[0] * cells_[1] * cells_[2]);
+  if (all <= 8 * slots + 32768) {
+    start_.assign(all + 1, 0);
+    for (const std::uint64_t k : key) ++start_[k + 1];
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    std::vector<Index> next(start_.begin(), start_.end() - 1);
+    for (std::size_t s = 0; s < slots; ++s) order[next[key[s]]++] = static_cast<Index>(s);
+  } else {
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
+    const std::size_t capacity = std::bit_ceil(2 * slots);
+    table_key_.assign(capacity, no_key);
+    table_range_.resize(capacity);
+    for (std::size_t n = 0; n < slots;) {
+      std::size_t end = n + 1;
+      while (end < slots && key[order[end]] == key[order[n]]) ++end;
+      std::size_t place = spread(key[order[n]]) & (capacity - 1);
+      while (table_key_[place] != no_key) place = (place + 1) & (capacity - 1);
+      table_key_[place] = key[order[n]];
+      table_range_[place] = {static_cast<Index>(n), static_cast<Index>(end)};
+      n = end;
+    }
+  }
+  const auto permute = [&](auto& values) {
+    auto old = values;
+    for (std::size_t n = 0; n < slots; ++n) values[n] = old[order[n]];
+  };
+  permute(x_);
+  permute(y_);
+  permute(z_);
+  permute(point_);
+  home_.reserve(points);
+  for (std::size_t n = 0; n < slots; ++n) {
+    if (order[n] < points) home_.push_back(static_cast<Index>(n));
+  }
+}
+
+NeighbourGrid::Range NeighbourGrid::sparse_cell(std::uint64_t key) const {
+  const std::size_t mask = table_key_.size() - 1;
+  for (std::size_t place = spread(key) & mask;; place = (place + 1) & mask) {
+    if (table_key_[place] == key) return table_range_[place];
+    if (table_key_[place] == no_key) return {0, 0};
+  }
+}
+
+// Calls body(begin, end) for runs of slots that hold everything within the radius.
+template <class Body>
+void NeighbourGrid::for_ranges(const Vec3& centre, double radius, Body&& body) const {
+  std::array<std::int64_t, 3> low, high;
+  for (int k = 0; k < 3; ++k) {
+    const double last = static_cast<double>(cells_[k] - 1);
+    const double from = std::floor((centre[k] - radius - min_[k]) / edge_);
+    const double to = std::floor((centre[k] + radius - min_[k]) / edge_);
+    if (!(to >= 0.0) || !(from <= last)) return;
+    low[k] = static_cast<std::int64_t>(std::max(from, 0.0));
+    high[k] = static_cast<std::int64_t>(std::min(to, last));
+  }
+  for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      const std::uint64_t row = static_cast<std::uint64_t>((z * cells_[1] + y) * cells_[0]);
+      if (!start_.empty()) {
+        const Index begin = start_[row + low[0]];
+        const Index end = start_[row + high[0] + 1];
+        if (begin != end) body(begin, end);
+        continue;
+      }
+      for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+        const Range range = sparse_cell(row + static_cast<std::uint64_t>(x));
+        if (range.begin != range.end) body(range.begin, range.end);
+      }
+    }
+  }
+}
+
+std::size_t NeighbourGrid::count_candidates(const Vec3& centre, double radius) const {
+  std::size_t count = 0;
+  for_ranges(centre, radius, [&](Index begin, Index end) { count += end - begin; });
+  return count;
+}
+
+void NeighbourGrid::find(const Vec3& centre, double radius, std::vector<Index>& slots, Index except) const {
+  std::size_t found = 0;
+  const double limit = radius * radius;
+  for_ranges(centre, radius, [&](Index begin, Index end) {
+    if (slots.size() < found + (end - begin)) slots.resize(2 * slots.size() + (end - begin));
+    Index* out = slots.data();
+    // Every slot is written and only kept ones advance: no branch that the processor could guess wrong.
+    for (Index s = begin; s < end; ++s) {
+      const double dx = x_[s] - centre.x;
+      const double dy = y_[s] - centre.y;
+      const double dz = z_[s] - centre.z;
+      out[found] = s;
+      found += static_cast<std::size_t>((dx * dx + dy * dy + dz * dz <= limit) & (s != except));
+    }
+  });
+  slots.resize(found);
+}
+
+double median_nearest_distance(std::span<const Vec3> points, const Box& box) {
+  if (points.size() < 2) return 0.0;
+  const Bounds bounds = bounds_of(points);
+  // Start from the spacing of as many points spread evenly (but of atoms, where that is far more) and widen while
+  // most points find nobody.
+  const Vec3 extent = glm::max(bounds.extent(), Vec3(1e-3 * bounds.diagonal()));
+  const double spacing = std::max(std::cbrt(extent.x * extent.y * extent.z / static_cast<double>(points.size())), 1e-9);
+  const std::size_t stride = (points.size() + 19999) / 20000;
+  std::vector<double> nearest;
+  std::vector<Index> slots;
+  for (double radius = std::min(1.5 * spacing, 4.0);; radius *= 2.0) {
+    const NeighbourGrid grid(points, box, radius, radius);
+    nearest.clear();
+    std::size_t asked = 0;
+    for (std::size_t n = 0; n < grid.home_slots().size(); n += stride, ++asked) {
+      const Index slot = grid.home_slots()[n];
+      const Vec3 centre = grid.position(slot);
+      grid.find(centre, radius, slots, slot);
+      double best = radius * radius * 2.0;
+      for (const Index s : slots) {
+        const Vec3 d = grid.position(s) - centre;
+        best = std::min(best, glm::dot(d, d));
+      }
+      if (!slots.empty()) nearest.push_back(std::sqrt(best));
+    }
+    // Those that found nobody are further away than all that did.
+    if (nearest.size() > asked / 2 || radius > 2.0 * bounds.diagonal()) {
+      if (nearest.empty()) return 0.0;
+      const std::size_t middle = std::min(asked / 2, nearest.size() - 1);
+      std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(middle), nearest.end());
+      return nearest[middle];
+    }
+  }
+}
+
+}  // namespace atomesh
