@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "render/cpu/cpu_renderer.h"
 #include "render/cpu/reference.h"
 
 namespace atomesh {
@@ -19,7 +20,7 @@ struct Entry {
 
 // In the order `auto` prefers them.
 const std::vector<Entry>& registry() {
-  static const std::vector<Entry> entries{{"reference", reference_renderer}};
+  static const std::vector<Entry> entries{{"cpu", cpu_renderer}, {"reference", reference_renderer}};
   return entries;
 }
 

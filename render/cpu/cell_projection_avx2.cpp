@@ -1,0 +1,22 @@
+// The kernel of cell projection compiled for AVX2 with FMA.
+#define ATOMESH_ISA cell_projection_avx2
+#include "render/cpu/lanes.h"
+
+// After lanes.h.
+#include "render/cpu/cell_projection_kernel.h"
+#include "render/shared/segment.h"
+
+// After those.
+#include "render/cpu/cell_projection_setup.inl"
+
+// Last.
+#include "render/cpu/cell_projection_block.inl"
+
+namespace atomesh::cell_projection {
+
+const Kernel* avx2_kernel() {
+  static const Kernel kernel{"avx2", ATOMESH_ISA::setup, ATOMESH_ISA::draw_block};
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &kernel : nullptr;
+}
+
+}  // namespace atomesh::cell_projection

@@ -1,0 +1,22 @@
+// The kernel of cell projection compiled for any processor of the target.
+#define ATOMESH_ISA cell_projection_baseline
+#include "render/cpu/lanes.h"
+
+// After lanes.h.
+#include "render/cpu/cell_projection_kernel.h"
+#include "render/shared/segment.h"
+
+// After those.
+#include "render/cpu/cell_projection_setup.inl"
+
+// Last.
+#include "render/cpu/cell_projection_block.inl"
+
+namespace atomesh::cell_projection {
+
+const Kernel* baseline_kernel() {
+  static const Kernel kernel{"baseline", ATOMESH_ISA::setup, ATOMESH_ISA::draw_block};
+  return &kernel;
+}
+
+}  // namespace atomesh::cell_projection

@@ -1,0 +1,139 @@
+// What the driver of cell projection and its kernels hand each other: plain structs, no classes. A kernel is one source
+// (cell_projection_setup.inl, cell_projection_block.inl) compiled once per instruction set.
+//
+// Depth along a ray is carried as u, affine in the pixel for every plane and growing with depth z:
+//   perspective u = 1 - z_ref / z  (planes project so that 1/z is affine),   parallel u = z - z_ref,
+// z_ref the depth of the sample's centre, so that floats resolve what matters. A face's three coefficients come from
+// its corners in ascending order of vertex index, so both cells at a face compute bit-identical depths of it: where one
+// cell ends the next begins, no ray misses or doubles a cell, and lengths along a ray telescope.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "core/geometry.h"
+
+namespace atomesh::cell_projection {
+
+inline constexpr int tile_side = 32;  // pixels
+inline constexpr int block_side = 4;  // pixels; a block's 16 pixels are the lanes of a register
+inline constexpr int blocks_per_side = tile_side / block_side;
+inline constexpr int block_pixels = block_side * block_side;
+
+// Rays pass this much of a pixel right of the pixel's centre, and ray_lift of that above it: then no ray of a picture
+// aligned with a crystal runs in a lattice plane or along a row of edges, where rounding would decide cell by cell.
+inline constexpr double ray_shift = 0x1p-14;
+inline constexpr double ray_lift = 0.15;
+
+// A block of pixels is finished when no ray of it lets more light through than this.
+inline constexpr float opaque_enough = 0x1p-18F;
+
+// Constants of one picture.
+struct View {
+  bool perspective;
+  double reference;    // z_ref, Å
+  double pixel;        // Camera::pixel
+  double left, top;    // image-plane coordinates of the (shifted) centre of pixel (0, 0)
+  float nearest;       // u of the eye's plane, where a ray that starts inside begins
+  float farthest;      // u no plane lies behind
+  double order_blend;  // 0: cells in order of their circumsphere's power (Delaunay); 1: of their centroid
+};
+
+// A cell's four faces as affine functions u(i, j) = a i + b j + c of the pixel within the tile, those the ray enters by
+// and those it leaves by, each list padded to four with repeats.
+struct CellPlanes {
+  float in_a[4], in_b[4], in_c[4];
+  float out_a[4], out_b[4], out_c[4];
+  std::uint32_t out_count;
+};
+
+// Up to four attributes of a cell (RGBA, or one scalar): value at pixel (i, j) and depth z is
+//   base(i, j) + (z - z_cell) · slope(i, j),  both affine in the pixel, clamped to the range of the cell's vertices.
+struct CellValues {
+  float base_a[4], base_b[4], base_c[4];
+  float slope_a[4], slope_b[4], slope_c[4];
+  float low[4], high[4];
+  float depth;                   // z_cell - z_ref
+  std::uint16_t first_interval;  // of the colour map, that the cell's scalars touch
+  std::uint16_t last_interval;
+  Index cell;                    // index into Scene::tetrahedra
+  std::uint8_t surface_entries;  // bit s: entry s (of in_a …) is a face of the surface
+  std::uint8_t entry_faces[4];   // Scene's number of the face of entry s
+};
+
+// A linear piece of the colour map: colour = first + (s - begin) · slope for begin <= s <= end. RGB, then opacity.
+struct MapInterval {
+  float begin;
+  float end;
+  float first[4];
+  float slope[4];
+};
+
+// Colour of the layer where a ray enters through a face of the surface.
+struct Shader {
+  void (*shade)(const void* context, Index cell, int face, double column, double row, double u, float* rgb);
+  const void* context;
+};
+
+struct CellOptics {
+  float alpha_length;      // 1/Å
+  int samples;             // per cell; 0 integrates exactly
+  const MapInterval* map;  // mode volume; nullptr where vertices carry RGBA
+  Shader layer;            // mode volume_surface; shade is nullptr elsewhere
+  float layer_alpha;
+};
+
+struct SetupInput {
+  const double* vertices;  // three per vertex: camera's axes (right, up, depth) about the eye, Å
+  const Index* corners;    // four per tetrahedron
+  const float* values;     // per vertex, `value_count` of them
+  int value_count;         // 4 or 1
+  const Index* cells;      // of the tile
+  std::size_t count;
+  const std::uint8_t*
+      surface_faces;  // per tetrahedron, bit f: face f is on the surface; nullptr when no layer is drawn
+  int column, row;    // the tile's first pixel
+};
+
+// Lines of the lists that a block's cells pass through; sized by the driver for the longest list.
+struct BlockScratch {
+  float* u_in;            // 16 per cell
+  float* u_out;           // 16 per cell
+  std::uint16_t* lanes;   // per cell: pixels that meet it
+  std::uint32_t* record;  // per cell: which of the block's cells it is
+  std::uint32_t* order;   // per cell
+  std::uint32_t* moved;   // per cell
+  float* light;           // 64 per cell, used where cells overlap in a cycle
+};
+
+struct BlockInput {
+  const CellPlanes* planes;  // of the tile
+  const CellValues* values;
+  const std::uint32_t* cells;  // of the block: indices into planes and values, roughly front to back
+  std::size_t count;
+  int column, row;            // the block's first pixel, within the tile
+  int tile_column, tile_row;  // the tile's first pixel
+};
+
+struct Kernel {
+  std::string_view name;
+  // Fills planes, values and keys (ascending: front to back) of each of the tile's cells. A cell that cannot be seen
+  // gets an infinite key.
+  void (*setup)(const View&, const SetupInput&, CellPlanes*, CellValues*, double* keys);
+  // Premultiplied RGB and coverage of the block's 16 pixels, rows first. Returns the ray–cell steps composed.
+  std::uint64_t (*draw_block)(const View&, const CellOptics&, const BlockInput&, const BlockScratch&, float* rgba);
+};
+
+// nullptr where this build or this processor lacks the instruction set.
+const Kernel* avx512_kernel();
+const Kernel* avx2_kernel();
+const Kernel* baseline_kernel();
+
+// The fastest this processor runs, or the one set_kernel() chose.
+const Kernel& kernel();
+// For tests and benches: draw with the named kernel ("avx512", "avx2", "baseline"; "" for the fastest) from now on.
+// Throws UnavailableError when this processor cannot.
+void set_kernel(std::string_view name);
+
+}  // namespace atomesh::cell_projection

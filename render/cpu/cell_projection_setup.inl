@@ -1,0 +1,224 @@
+// Set-up of a tile's cells: double in, float about the tile out. Four lanes of doubles carry a cell's four faces, then
+// its four attributes. Included by the kernels' sources after lanes.h.
+
+namespace atomesh::ATOMESH_ISA {
+
+using namespace cell_projection;
+
+typedef double D4 __attribute__((vector_size(32)));
+typedef float F4 __attribute__((vector_size(16)));
+typedef std::int64_t L4 __attribute__((vector_size(32)));
+typedef std::int32_t I4 __attribute__((vector_size(16)));
+
+// For each set of faces (bit k: face k): their numbers in ascending order, the list filled up with the first.
+struct FaceLists {
+  I4 list[16];
+};
+
+constexpr FaceLists make_face_lists() {
+  FaceLists lists{};
+  for (int set = 0; set < 16; ++set) {
+    int found = 0;
+    int faces[4] = {0, 0, 0, 0};
+    for (int k = 0; k < 4; ++k) {
+      if ((set >> k & 1) != 0) faces[found++] = k;
+    }
+    for (int k = found; k < 4; ++k) faces[k] = faces[0];
+    lists.list[set] = I4{faces[0], faces[1], faces[2], faces[3]};
+  }
+  return lists;
+}
+
+constexpr FaceLists face_lists = make_face_lists();
+
+#define ATOMESH_SPLAT(x) ((x)-D4{})
+#define ATOMESH_SUM(v) ((v)[0] + (v)[1] + (v)[2] + (v)[3])
+#define ATOMESH_STORE4(target, v) __builtin_memcpy(target, &(v), 16)
+
+// Corners of a cell in ascending order of vertex index.
+struct SortedCorners {
+  Index vertex[4];
+  int number[4];  // its place in the tetrahedron
+  bool odd;       // the permutation's parity
+};
+
+static inline SortedCorners sort_corners(const Index* corners) {
+  SortedCorners s{{corners[0], corners[1], corners[2], corners[3]}, {0, 1, 2, 3}, false};
+  constexpr int network[5][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
+  for (const auto& [i, j] : network) {
+    const bool swap = s.vertex[j] < s.vertex[i];
+    const Index vi = s.vertex[i];
+    const Index vj = s.vertex[j];
+    const int ni = s.number[i];
+    const int nj = s.number[j];
+    s.vertex[i] = swap ? vj : vi;
+    s.vertex[j] = swap ? vi : vj;
+    s.number[i] = swap ? nj : ni;
+    s.number[j] = swap ? ni : nj;
+    s.odd ^= swap;
+  }
+  return s;
+}
+
+static void setup(const View& view, const SetupInput& input, CellPlanes* planes, CellValues* values, double* keys) {
+  const bool perspective = view.perspective;
+  const double pixel = view.pixel;
+  const double x0 = view.left + pixel * input.column;
+  const double y0 = view.top - pixel * input.row;
+  for (std::size_t n = 0; n < input.count; ++n) {
+    const Index cell = input.cells[n];
+    const SortedCorners corners = sort_corners(input.corners + 4 * static_cast<std::size_t>(cell));
+    const double* p[4];
+    for (int k = 0; k < 4; ++k) p[k] = input.vertices + 3 * static_cast<std::size_t>(corners.vertex[k]);
+    const D4 x{p[0][0], p[1][0], p[2][0], p[3][0]};
+    const D4 y{p[0][1], p[1][1], p[2][1], p[3][1]};
+    const D4 z{p[0][2], p[1][2], p[2][2], p[3][2]};
+
+    // Planes N·p = c of the faces opposite each corner, from their corners a < b < c.
+    const L4 to_a{1, 0, 0, 0};
+    const L4 to_b{2, 2, 1, 1};
+    const L4 to_c{3, 3, 3, 2};
+    const D4 ax = __builtin_shuffle(x, to_a);
+    const D4 ay = __builtin_shuffle(y, to_a);
+    const D4 az = __builtin_shuffle(z, to_a);
+    const D4 bx = __builtin_shuffle(x, to_b) - ax;
+    const D4 by = __builtin_shuffle(y, to_b) - ay;
+    const D4 bz = __builtin_shuffle(z, to_b) - az;
+    const D4 cx = __builtin_shuffle(x, to_c) - ax;
+    const D4 cy = __builtin_shuffle(y, to_c) - ay;
+    const D4 cz = __builtin_shuffle(z, to_c) - az;
+    const D4 nx = by * cz - bz * cy;
+    const D4 ny = bz * cx - bx * cz;
+    const D4 nz = bx * cy - by * cx;
+    const D4 constant = nx * ax + ny * ay + nz * az;
+
+    // u(x, y) = (m - k (Nx x + Ny y)) / d + offset. A face that holds the eye (or is parallel to the rays) has d = 0: a
+    // d of next to nothing then puts it before or behind everything, the same for both its cells.
+    D4 d = perspective ? constant : nz;
+    const D4 tiny = ATOMESH_SPLAT(1e-200);
+    d = (d < tiny && d > -tiny) ? tiny : d;
+    const double k = perspective ? view.reference : 1.0;
+    const D4 m = perspective ? -view.reference * nz : constant;
+    const D4 inverse = 1.0 / d;
+    D4 a = -k * pixel * nx * inverse;
+    D4 b = k * pixel * ny * inverse;
+    D4 c = (m - k * (x0 * nx + y0 * ny)) * inverse + (perspective ? 1.0 : -view.reference);
+    const D4 abs_a = a < 0.0 ? -a : a;
+    const D4 abs_b = b < 0.0 ? -b : b;
+    const D4 abs_c = c < 0.0 ? -c : c;
+    D4 largest = abs_a > abs_b ? abs_a : abs_b;
+    largest = largest > abs_c ? largest : abs_c;
+    const D4 limit = ATOMESH_SPLAT(1e30);
+    const D4 scale = largest > limit ? limit / largest : ATOMESH_SPLAT(1.0);
+    a *= scale;
+    b *= scale;
+    c *= scale;
+
+    // The ray enters by the faces whose outward normal looks back at it. Which way is outward follows from the order of
+    // the corners alone, so that the cells at a face never disagree.
+    const double turn = corners.odd ? -1.0 : 1.0;
+    const D4 outward = D4{-1.0, 1.0, -1.0, 1.0} * turn;
+    const L4 enters = (d * outward < 0.0);
+    const unsigned entries =
+        static_cast<unsigned>((enters[0] & 1) | (enters[1] & 2) | (enters[2] & 4) | (enters[3] & 8));
+    CellPlanes& plane = planes[n];
+    CellValues& value = values[n];
+    const F4 fa = __builtin_convertvector(a, F4);
+    const F4 fb = __builtin_convertvector(b, F4);
+    const F4 fc = __builtin_convertvector(c, F4);
+    const I4 in = face_lists.list[entries];
+    const I4 out = face_lists.list[entries ^ 15U];
+    const F4 ina = entries != 0 ? __builtin_shuffle(fa, in) : F4{};
+    const F4 inb = entries != 0 ? __builtin_shuffle(fb, in) : F4{};
+    const F4 inc = entries != 0 ? __builtin_shuffle(fc, in) : view.nearest - F4{};
+    const F4 outa = __builtin_shuffle(fa, out);
+    const F4 outb = __builtin_shuffle(fb, out);
+    const F4 outc = __builtin_shuffle(fc, out);
+    ATOMESH_STORE4(plane.in_a, ina);
+    ATOMESH_STORE4(plane.in_b, inb);
+    ATOMESH_STORE4(plane.in_c, inc);
+    ATOMESH_STORE4(plane.out_a, outa);
+    ATOMESH_STORE4(plane.out_b, outb);
+    ATOMESH_STORE4(plane.out_c, outc);
+    const int entry_count = __builtin_popcount(entries);
+    plane.out_count = static_cast<std::uint32_t>(4 - entry_count);
+    value.cell = cell;
+    value.surface_entries = 0;
+    if (input.surface_faces != nullptr && input.surface_faces[cell] != 0) {
+      for (int s = 0; s < entry_count; ++s) {
+        const int face = corners.number[in[s]];
+        value.entry_faces[s] = static_cast<std::uint8_t>(face);
+        const unsigned on_surface = (static_cast<unsigned>(input.surface_faces[cell]) >> face) & 1U;
+        value.surface_entries = static_cast<std::uint8_t>(value.surface_entries | (on_surface << s));
+      }
+    }
+
+    // Gradients of the barycentric coordinates: ±N / 6V. A cell too flat to have them gets the mean of its corners.
+    const double mx = 0.25 * ATOMESH_SUM(x);
+    const double my = 0.25 * ATOMESH_SUM(y);
+    const double mz = 0.25 * ATOMESH_SUM(z);
+    const D4 squares = (x - mx) * (x - mx) + (y - my) * (y - my) + (z - mz) * (z - mz);
+    const double size = ATOMESH_SUM(squares);
+    const double volume6 = nx[3] * (x[3] - x[0]) + ny[3] * (y[3] - y[0]) + nz[3] * (z[3] - z[0]);
+    const bool flat = volume6 * volume6 <= 1e-26 * size * size * size;
+    const D4 over_volume = D4{-1.0, 1.0, -1.0, 1.0} * (flat ? 0.0 : 1.0 / volume6);
+    const D4 wx = nx * over_volume;
+    const D4 wy = ny * over_volume;
+    const D4 wz = nz * over_volume;
+    D4 gx{};
+    D4 gy{};
+    D4 gz{};
+    D4 mean{};
+    F4 low{};
+    F4 high{};
+    for (int v = 0; v < 4; ++v) {
+      F4 here{};
+      const float* source = input.values + static_cast<std::size_t>(input.value_count) * corners.vertex[v];
+      if (input.value_count == 4) {
+        __builtin_memcpy(&here, source, 16);
+      } else {
+        here[0] = *source;
+      }
+      low = v == 0 ? here : (here < low ? here : low);
+      high = v == 0 ? here : (here > high ? here : high);
+      const D4 exact = __builtin_convertvector(here, D4);
+      mean += 0.25 * exact;
+      gx += exact * wx[v];
+      gy += exact * wy[v];
+      gz += exact * wz[v];
+    }
+    const double h = perspective ? mz : 1.0;
+    const F4 base_a = __builtin_convertvector(gx * (h * pixel), F4);
+    const F4 base_b = __builtin_convertvector(gy * (-h * pixel), F4);
+    const F4 base_c = __builtin_convertvector(mean + gx * (h * x0 - mx) + gy * (h * y0 - my), F4);
+    const double across = perspective ? 1.0 : 0.0;
+    const F4 slope_a = __builtin_convertvector(gx * (across * pixel), F4);
+    const F4 slope_b = __builtin_convertvector(gy * (-across * pixel), F4);
+    const F4 slope_c = __builtin_convertvector(gz + across * (gx * x0 + gy * y0), F4);
+    ATOMESH_STORE4(value.base_a, base_a);
+    ATOMESH_STORE4(value.base_b, base_b);
+    ATOMESH_STORE4(value.base_c, base_c);
+    ATOMESH_STORE4(value.slope_a, slope_a);
+    ATOMESH_STORE4(value.slope_b, slope_b);
+    ATOMESH_STORE4(value.slope_c, slope_c);
+    ATOMESH_STORE4(value.low, low);
+    ATOMESH_STORE4(value.high, high);
+    value.depth = static_cast<float>(mz - view.reference);
+
+    // With L the linear function that equals |p - centroid|² at the corners, the power of the eye with respect to the
+    // circumsphere is |eye - centroid|² - L(eye); seen from infinity cells sort by their circumcentre's depth.
+    const double qx = ATOMESH_SUM(squares * wx);
+    const double qy = ATOMESH_SUM(squares * wy);
+    const double qz = ATOMESH_SUM(squares * wz);
+    const double keep = 1.0 - view.order_blend;
+    if (entries == 15U) {
+      keys[n] = __builtin_inf();
+    } else if (perspective) {
+      keys[n] = mx * mx + my * my + mz * mz + keep * (qx * mx + qy * my + qz * mz - 0.25 * size);
+    } else {
+      keys[n] = mz + keep * 0.5 * qz;
+    }
+  }
+}
+
+}  // namespace atomesh::ATOMESH_ISA

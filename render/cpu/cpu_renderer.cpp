@@ -1,0 +1,40 @@
+#include "render/cpu/cpu_renderer.h"
+
+#include "render/cpu/atom_balls.h"
+#include "render/cpu/cell_projection.h"
+#include "render/cpu/surface_modes.h"
+
+namespace atomesh {
+
+namespace {
+
+class CpuRenderer final : public Renderer {
+ public:
+  std::string_view name() const override { return "cpu"; }
+
+  Image draw(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
+             const Channels& channels, Progress& progress) const override {
+    progress.stage("render");
+    switch (scene.mode) {
+      case Mode::volume_surface:
+      case Mode::volume:
+        return draw_cell_projection(scene, camera, parameters, stats, progress);
+      case Mode::surface:
+        return draw_surface(scene, camera, parameters, stats, channels, progress);
+      case Mode::xray:
+        return draw_xray(scene, camera, parameters, stats, channels, progress);
+      case Mode::atoms:
+        break;
+    }
+    return draw_atom_balls(scene, camera, parameters, stats, channels, progress);
+  }
+};
+
+}  // namespace
+
+const Renderer& cpu_renderer() {
+  static const CpuRenderer renderer;
+  return renderer;
+}
+
+}  // namespace atomesh

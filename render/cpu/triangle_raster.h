@@ -1,0 +1,57 @@
+// Which rays cross a triangle, and where: watertight, so that a ray through a closed surface enters as often as it
+// leaves, whatever it meets on the way (vertices, edges, triangles seen edge-on or reaching behind the eye).
+#pragma once
+
+#include <array>
+
+#include "core/camera.h"
+#include "core/geometry.h"
+#include "render/cpu/tile_bins.h"
+
+namespace atomesh {
+
+// A crossing of the ray's half in front of the eye.
+struct Crossing {
+  double depth;
+  bool entering;  // through the triangle's outer side
+};
+
+// With h the vertices' homogeneous image-plane coordinates, (x, y, 1) · (h_i × h_j) tells on which side of the edge ij
+// the ray through (x, y) passes; its terms come in the order i < j, so that both triangles at an edge see the same
+// number, and a zero is resolved as if the ray stood an infinitely small ε further right and ε² further up.
+class TriangleRaster {
+ public:
+  TriangleRaster(const ProjectedVertices& vertices, const Triangle& corners, bool perspective);
+
+  // What is constant along a row of rays.
+  struct Row {
+    std::array<double, 3> constant;
+  };
+  Row row(double y) const;
+
+  bool crosses(const Row& row, double x, Crossing& crossing) const {
+    std::array<double, 3> side;
+    int left = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      side[k] = edges_[k].x * x + row.constant[k];
+      left += side[k] > 0.0 || (side[k] == 0.0 && edges_[k].tie_left) ? 1 : 0;
+    }
+    if (left != 0 && left != 3) return false;
+    // The crossing's barycentric weights are the sides' shares, so its depth lies between the corners'.
+    const double sum = side[0] + side[1] + side[2];
+    if (sum == 0.0) return false;
+    crossing.depth = (side[0] * depths_[0] + side[1] * depths_[1] + side[2] * depths_[2]) / sum;
+    crossing.entering = left == 3;
+    return crossing.depth > 0.0;
+  }
+
+ private:
+  struct Edge {
+    double x, y, constant;
+    bool tie_left;
+  };
+  std::array<Edge, 3> edges_;  // opposite corner 0, 1, 2
+  std::array<double, 3> depths_;
+};
+
+}  // namespace atomesh
