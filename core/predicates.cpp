@@ -1,16 +1,24 @@
 #include "core/predicates.h"
 
+#include "core/double_double.h"
 #include "core/expansion.h"
 
 namespace atomesh {
 
 namespace {
 
+// Each sign is found by the first of three evaluations whose error bound decides: doubles (nearly always),
+// double-double (crystals turned or rounded, where the determinant is small but not zero), expansions (exact: where it
+// is zero).
+
 constexpr double epsilon = std::numeric_limits<double>::epsilon() / 2;  // 2^-53, half an ulp of 1
 // Error bounds of the rounded determinants relative to their permanents: Shewchuk 1997, section 4.3 (orient3d, bound A)
 // and 4.4 (insphere, bound A).
 constexpr double orientation_bound = (7.0 + 56.0 * epsilon) * epsilon;
 constexpr double in_sphere_bound = (16.0 + 224.0 * epsilon) * epsilon;
+// No term of either determinant passes more than 11 roundings of at most 7 epsilon² each; the rest is margin, for the
+// permanent is itself rounded.
+constexpr double double_double_bound = 256.0 * epsilon * epsilon;
 
 int sign_of(double value) {
   return (value > 0.0) - (value < 0.0);
@@ -25,55 +33,61 @@ bool exact(const Vec3& p, const Vec3& q, const Vec3& v) {
   return tail_free(p.x, q.x, v.x) && tail_free(p.y, q.y, v.y) && tail_free(p.z, q.z, v.z);
 }
 
-// A vector with expansions for coordinates; T is Expansion<1> or Expansion<2>.
+// A vector of numbers of type T: DoubleDouble, Expansion<1> or Expansion<2>.
 template <class T>
-struct ExactVector {
+struct VectorOf {
   T x, y, z;
 };
 
-ExactVector<Expansion<1>> rounded(const Vec3& v) {
+VectorOf<Expansion<1>> expanded(const Vec3& v) {
   return {as_expansion(v.x), as_expansion(v.y), as_expansion(v.z)};
 }
 
-ExactVector<Expansion<2>> difference(const Vec3& p, const Vec3& q) {
+VectorOf<Expansion<2>> expanded_difference(const Vec3& p, const Vec3& q) {
   return {exact_difference(p.x, q.x), exact_difference(p.y, q.y), exact_difference(p.z, q.z)};
 }
 
-template <class T>
-int exact_orientation(const ExactVector<T>& a, const ExactVector<T>& b, const ExactVector<T>& c) {
-  const auto bc = b.x * c.y - b.y * c.x;
-  const auto ca = c.x * a.y - c.y * a.x;
-  const auto ab = a.x * b.y - a.y * b.x;
-  return ((bc * a.z + ca * b.z) + ab * c.z).sign();
+VectorOf<DoubleDouble> difference(const Vec3& p, const Vec3& q) {
+  return {double_double_difference(p.x, q.x), double_double_difference(p.y, q.y), double_double_difference(p.z, q.z)};
 }
 
 template <class T>
-auto squared_length(const ExactVector<T>& a) {
+auto minor(const VectorOf<T>& p, const VectorOf<T>& q) {
+  return p.x * q.y - p.y * q.x;
+}
+
+template <class T>
+auto squared_length(const VectorOf<T>& a) {
   return (a.x * a.x + a.y * a.y) + a.z * a.z;
 }
 
 template <class T>
-int exact_in_sphere(const ExactVector<T>& a, const ExactVector<T>& b, const ExactVector<T>& c,
-                    const ExactVector<T>& d) {
-  const auto ab = a.x * b.y - a.y * b.x;
-  const auto ac = a.x * c.y - a.y * c.x;
-  const auto ad = a.x * d.y - a.y * d.x;
-  const auto bc = b.x * c.y - b.y * c.x;
-  const auto bd = b.x * d.y - b.y * d.x;
-  const auto cd = c.x * d.y - c.y * d.x;
+auto orientation_determinant(const VectorOf<T>& a, const VectorOf<T>& b, const VectorOf<T>& c) {
+  return (minor(b, c) * a.z + minor(c, a) * b.z) + minor(a, b) * c.z;
+}
+
+template <class T>
+auto in_sphere_determinant(const VectorOf<T>& a, const VectorOf<T>& b, const VectorOf<T>& c, const VectorOf<T>& d) {
+  const auto ab = minor(a, b), ac = minor(a, c), ad = minor(a, d);
+  const auto bc = minor(b, c), bd = minor(b, d), cd = minor(c, d);
   const auto abc = (bc * a.z - ac * b.z) + ab * c.z;
   const auto abd = (bd * a.z - ad * b.z) + ab * d.z;
   const auto acd = (cd * a.z - ad * c.z) + ac * d.z;
   const auto bcd = (cd * b.z - bd * c.z) + bc * d.z;
-  const auto first = bcd * squared_length(a) - acd * squared_length(b);
-  const auto second = abd * squared_length(c) - abc * squared_length(d);
-  return (first + second).sign();
+  return (bcd * squared_length(a) - acd * squared_length(b)) + (abd * squared_length(c) - abc * squared_length(d));
 }
 
-// Kept out of line: hundreds of kilobytes of stack, for the few quadruples whose differences do not fit a double.
-[[gnu::noinline]] int exact_in_sphere_of_points(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
-                                                const Vec3& e) {
-  return exact_in_sphere(difference(a, e), difference(b, e), difference(c, e), difference(d, e));
+// Kept out of line: hundreds of kilobytes of stack, for the few quintuples whose differences do not fit a double.
+[[gnu::noinline]] int exact_in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
+  return in_sphere_determinant(expanded_difference(a, e), expanded_difference(b, e), expanded_difference(c, e),
+                               expanded_difference(d, e))
+      .sign();
+}
+
+// True when the five numbers take at most two values.
+bool two_values(double a, double b, double c, double d, double e) {
+  const double other = a != e ? a : b != e ? b : c != e ? c : d;
+  return (a == e || a == other) && (b == e || b == other) && (c == e || c == other) && (d == e || d == other);
 }
 
 }  // namespace
@@ -94,9 +108,12 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                            std::abs(w.z) * (std::abs(uv1) + std::abs(uv2));
   if (std::abs(determinant) > orientation_bound * permanent) return sign_of(determinant);
   if (exact(b, a, u) && exact(c, a, v) && exact(d, a, w)) {
-    return permanent == 0.0 ? 0 : exact_orientation(rounded(u), rounded(v), rounded(w));
+    return orientation_determinant(expanded(u), expanded(v), expanded(w)).sign();
   }
-  return exact_orientation(difference(b, a), difference(c, a), difference(d, a));
+  const double finer = orientation_determinant(difference(b, a), difference(c, a), difference(d, a)).high;
+  if (std::abs(finer) > double_double_bound * permanent) return sign_of(finer);
+  return orientation_determinant(expanded_difference(b, a), expanded_difference(c, a), expanded_difference(d, a))
+      .sign();
 }
 
 int in_sphere(const Vec3& pa, const Vec3& pb, const Vec3& pc, const Vec3& pd, const Vec3& pe) {
@@ -104,10 +121,10 @@ int in_sphere(const Vec3& pa, const Vec3& pb, const Vec3& pc, const Vec3& pd, co
   const Vec3 b = pb - pe;
   const Vec3 c = pc - pe;
   const Vec3 d = pd - pe;
-  const auto minor = [](const Vec3& p, const Vec3& q) { return p.x * q.y - p.y * q.x; };
+  const auto product = [](const Vec3& p, const Vec3& q) { return p.x * q.y - p.y * q.x; };
   const auto bound = [](const Vec3& p, const Vec3& q) { return std::abs(p.x * q.y) + std::abs(p.y * q.x); };
-  const double ab = minor(a, b), ac = minor(a, c), ad = minor(a, d);
-  const double bc = minor(b, c), bd = minor(b, d), cd = minor(c, d);
+  const double ab = product(a, b), ac = product(a, c), ad = product(a, d);
+  const double bc = product(b, c), bd = product(b, d), cd = product(c, d);
   const double aa = glm::dot(a, a), bb = glm::dot(b, b), cc = glm::dot(c, c), dd = glm::dot(d, d);
   const double abc = a.z * bc - b.z * ac + c.z * ab;
   const double abd = a.z * bd - b.z * ad + d.z * ab;
@@ -122,10 +139,19 @@ int in_sphere(const Vec3& pa, const Vec3& pb, const Vec3& pc, const Vec3& pd, co
       aa * (bz * cd_bound + cz * bd_bound + dz * bc_bound) + bb * (az * cd_bound + cz * ad_bound + dz * ac_bound) +
       cc * (az * bd_bound + bz * ad_bound + dz * ab_bound) + dd * (az * bc_bound + bz * ac_bound + cz * ab_bound);
   if (std::abs(determinant) > in_sphere_bound * permanent) return sign_of(determinant);
-  if (exact(pa, pe, a) && exact(pb, pe, b) && exact(pc, pe, c) && exact(pd, pe, d)) {
-    return exact_in_sphere(rounded(a), rounded(b), rounded(c), rounded(d));
+
+  // Corners of one box are cospherical whatever its edges: the commonest zero in a crystal, seen without arithmetic.
+  if (two_values(pa.x, pb.x, pc.x, pd.x, pe.x) && two_values(pa.y, pb.y, pc.y, pd.y, pe.y) &&
+      two_values(pa.z, pb.z, pc.z, pd.z, pe.z)) {
+    return 0;
   }
-  return exact_in_sphere_of_points(pa, pb, pc, pd, pe);
+  const double finer =
+      in_sphere_determinant(difference(pa, pe), difference(pb, pe), difference(pc, pe), difference(pd, pe)).high;
+  if (std::abs(finer) > double_double_bound * permanent) return sign_of(finer);
+  if (exact(pa, pe, a) && exact(pb, pe, b) && exact(pc, pe, c) && exact(pd, pe, d)) {
+    return in_sphere_determinant(expanded(a), expanded(b), expanded(c), expanded(d)).sign();
+  }
+  return exact_in_sphere(pa, pb, pc, pd, pe);
 }
 
 }  // namespace atomesh
