@@ -1,0 +1,127 @@
+// What lies around the renderers: their names, supersampling, the background.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "render/renderer.h"
+#include "tests/render/fixtures.h"
+
+namespace atomesh {
+namespace {
+
+using namespace test;
+
+// Paints each pixel by a function of its image-plane position.
+class Painter final : public Renderer {
+ public:
+  explicit Painter(Vec4f (*paint)(double, double)) : paint_(paint) {}
+  std::string_view name() const override { return "painter"; }
+  Image draw(const Scene&, const Camera& camera, const Parameters&, RenderStats&, const Channels& channels,
+             Progress&) const override {
+    Image image(camera.width, camera.height);
+    for (int row = 0; row < camera.height; ++row) {
+      for (int column = 0; column < camera.width; ++column) {
+        image.at(column, row) = paint_(camera.x_of(column), camera.y_of(row));
+        if (channels.depth != nullptr) channels.depth->push_back(static_cast<float>(camera.x_of(column)));
+        if (channels.thickness != nullptr) channels.thickness->push_back(static_cast<float>(camera.y_of(row)));
+      }
+    }
+    return image;
+  }
+
+ private:
+  Vec4f (*paint_)(double, double);
+};
+
+Camera unit_camera(int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
+Image render_with(const Painter& painter, const Parameters& parameters, const Camera& camera,
+                  const Channels& channels = {}) {
+  RenderStats stats;
+  return render(painter, Scene(), camera, parameters, stats, channels);
+}
+
+TEST(Renderers, AreFoundByNameAndUnknownOnesListThem) {
+  const auto names = renderer_names();
+  EXPECT_NE(std::find(names.begin(), names.end(), "reference"), names.end());
+  for (const std::string& name : names) EXPECT_EQ(find_renderer(name).name(), name);
+  EXPECT_EQ(&find_renderer("auto"), &find_renderer(names.front()));
+  EXPECT_THROW(find_renderer("havs"), UnavailableError);
+  EXPECT_THROW(find_renderer("cuda"), UnavailableError);
+  try {
+    find_renderer("refernce");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean reference?"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Render, SupersamplingAveragesPremultipliedColoursOverThePixel) {
+  // The left half-plane opaque red, the right clear: the middle pixel of three is half covered.
+  const Painter half([](double x, double) { return x < 0.0 ? Vec4f(1, 0, 0, 1) : Vec4f(0.0F); });
+  Parameters parameters;
+  parameters.supersampling = 4;
+  parameters.background = Vec4f(0, 0, 1, 1);
+  std::vector<float> depth;
+  std::vector<float> thickness;
+  const Image image = render_with(half, parameters, unit_camera(3, 1), {&thickness, &depth, nullptr});
+  EXPECT_EQ(image.at(0, 0), Vec4f(1, 0, 0, 1));
+  EXPECT_EQ(image.at(1, 0), Vec4f(0.5F, 0, 0.5F, 1));
+  EXPECT_EQ(image.at(2, 0), Vec4f(0, 0, 1, 1));
+  // Depth from the ray right of the middle, thickness the mean.
+  EXPECT_FLOAT_EQ(depth[1], 0.125F);
+  EXPECT_FLOAT_EQ(thickness[1], 0.0F);
+  parameters.supersampling = 3;
+  depth.clear();
+  thickness.clear();
+  render_with(half, parameters, unit_camera(3, 1), {nullptr, &depth, nullptr});
+  EXPECT_FLOAT_EQ(depth[0], -1.0F);
+}
+
+TEST(Render, TransparentBackgroundKeepsTheColourOfWhatCoversIt) {
+  const Painter veil([](double x, double) { return x < 0.0 ? Vec4f(0.25F, 0, 0, 0.25F) : Vec4f(0.0F); });
+  Parameters parameters;
+  parameters.background = Vec4f(1, 1, 1, 0);
+  Image image = render_with(veil, parameters, unit_camera(2, 1));
+  EXPECT_EQ(image.at(0, 0), Vec4f(1, 0, 0, 0.25F));
+  EXPECT_EQ(image.at(1, 0), Vec4f(0.0F));
+  parameters.background = Vec4f(0, 1, 0, 0.5F);
+  image = render_with(veil, parameters, unit_camera(2, 1));
+  EXPECT_FLOAT_EQ(image.at(0, 0).a, 0.625F);
+  EXPECT_FLOAT_EQ(image.at(0, 0).r, 0.25F / 0.625F);
+  EXPECT_FLOAT_EQ(image.at(0, 0).g, 0.375F / 0.625F);
+  EXPECT_EQ(image.at(1, 0), Vec4f(0, 1, 0, 0.5F));
+}
+
+TEST(Render, PictureWithoutPixelsIsAnError) {
+  const Painter nothing([](double, double) { return Vec4f(0.0F); });
+  EXPECT_THROW(render_with(nothing, Parameters(), unit_camera(0, 5)), UsageError);
+}
+
+TEST(Render, CancelsAndGivesEmptyPicturesOfEmptyScenes) {
+  const Material one = atoms_material({{"Fe", {3, 4, 5}}});
+  for (const Mode mode : {Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms}) {
+    Parameters parameters = looking(mode, "front");
+    parameters.background = Vec4f(0, 0, 0, 0);
+    const Scene scene = make_scene(one, parameters);
+    const Camera camera = make_camera(parameters, scene.bounds, 9, 9);
+    for (const std::string& name : renderer_names()) {
+      RenderStats stats;
+      const Image image = render(find_renderer(name), scene, camera, parameters, stats);
+      EXPECT_EQ(image.at(0, 0), Vec4f(0.0F)) << name;
+      EXPECT_EQ(image.at(4, 4).a, mode == Mode::atoms ? 1.0F : 0.0F) << name;
+      Progress progress;
+      progress.request_cancel();
+      EXPECT_THROW(render(find_renderer(name), scene, camera, parameters, stats, {}, progress), CancelledError) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace atomesh
