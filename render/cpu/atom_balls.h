@@ -1,19 +1,23 @@
-// Mode atoms on the CPU: rays through a bounding-volume hierarchy of spheres (Embree).
+// Mode atoms on the CPU.
 #pragma once
 
 #include "render/renderer.h"
 
 namespace atomesh {
 
-// Draws scene.balls as render/shared/optics.h has it. Embree, in float, only proposes spheres, slightly enlarged so
-// that it misses none; whether, where and in what order the ray meets them is decided in double. A ray stops where less
-// than `faintest` of the light behind would come through, so a channel is off by at most that.
+// How the balls of a ray are found, see ball_traversal.h. All give the same picture to the last bit.
+enum class BallSearch { automatic, projection, hierarchy };
+
+// Draws scene.balls as render/shared/optics.h has it. A ray stops where no more than `faintest` of the light behind
+// would come through, so a channel is off by at most that. `automatic` projects unless that takes more than
+// `most_projected_entries`.
 //
-// RenderStats: setup_ms is the hierarchy, steps the number of balls composed. Channels: depth, id (Ball::atom).
-// Throws UnavailableError when Embree cannot start or runs out of memory.
+// RenderStats: setup_ms is the search's preparation, steps the number of balls composed. Channels: depth, id
+// (Ball::atom). Throws UnavailableError when Embree cannot start or runs out of memory.
 Image draw_atom_balls(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                      const Channels& channels, Progress& progress);
+                      const Channels& channels, Progress& progress, BallSearch search = BallSearch::automatic);
 
 inline constexpr double faintest = 1e-3;
+inline constexpr std::size_t most_projected_entries = std::size_t{1} << 24U;
 
 }  // namespace atomesh

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 #include <vector>
 
-#include "render/scene.h"
+#include "core/geometry.h"
 
 namespace atomesh {
 
@@ -15,12 +14,13 @@ namespace atomesh {
 class BallHits {
  public:
   struct Hit {
-    double length;
+    double length;  // Å along the ray
     Index ball;
     double opacity;
+    double left = 1.0;  // share of the light from behind that comes through this hit and those before it
   };
 
-  // Behind the hit at which less than `least_light` of the light is left, nothing is kept.
+  // Behind the hit at which no more than `least_light` is left, nothing is kept.
   explicit BallHits(double least_light) : least_light_(least_light) {}
 
   void clear() {
@@ -31,17 +31,18 @@ class BallHits {
   double reach() const { return reach_; }
   const std::vector<Hit>& hits() const { return hits_; }
 
-  // A ball already there is not taken twice.
-  void add(const Hit& hit) {
-    if (hit.length > reach_) return;
-    const auto place = std::lower_bound(hits_.begin(), hits_.end(), hit, [](const Hit& a, const Hit& b) {
-      return std::tie(a.length, a.ball) < std::tie(b.length, b.ball);
-    });
-    if (place != hits_.end() && place->length == hit.length && place->ball == hit.ball) return;
-    hits_.insert(place, hit);
-    double left = 1.0;
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
+  // A ball already there is not taken twice. Cheapest for hits that come roughly in order.
+  void add(double length, Index ball, double opacity) {
+    if (length > reach_) return;
+    std::size_t at = hits_.size();
+    while (at > 0 && std::tie(length, ball) < std::tie(hits_[at - 1].length, hits_[at - 1].ball)) --at;
+    if (at > 0 && hits_[at - 1].length == length && hits_[at - 1].ball == ball) return;
+    if (at == hits_.size() && length == reach_) return;  // behind the last at the same length
+    hits_.insert(hits_.begin() + static_cast<std::ptrdiff_t>(at), Hit{length, ball, opacity});
+    double left = at > 0 ? hits_[at - 1].left : 1.0;
+    for (std::size_t i = at; i < hits_.size(); ++i) {
       left *= 1.0 - hits_[i].opacity;
+      hits_[i].left = left;
       if (left > least_light_) continue;
       hits_.resize(i + 1);
       reach_ = hits_[i].length;

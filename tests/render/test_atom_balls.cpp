@@ -15,15 +15,19 @@ namespace {
 
 using namespace test;
 
-Drawn draw_balls(const Scene& scene, const Camera& camera, const Parameters& parameters) {
+Drawn draw_balls(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                 BallSearch search = BallSearch::automatic) {
   Drawn drawn;
   const Channels channels{nullptr, &drawn.depth, &drawn.id};
-  drawn.image = draw_atom_balls(scene, camera, parameters, drawn.stats, channels, no_progress());
+  drawn.image = draw_atom_balls(scene, camera, parameters, drawn.stats, channels, no_progress(), search);
   return drawn;
 }
 
 void expect_agreement(const Scene& scene, const Camera& camera, const Parameters& parameters, const std::string& what) {
-  const Drawn fast = draw_balls(scene, camera, parameters);
+  const Drawn fast = draw_balls(scene, camera, parameters, BallSearch::projection);
+  const Drawn other = draw_balls(scene, camera, parameters, BallSearch::hierarchy);
+  EXPECT_EQ(fast.image.pixels, other.image.pixels) << what;
+  EXPECT_EQ(fast.stats.steps, other.stats.steps) << what;
   const Drawn judge = draw(reference_renderer(), scene, camera, parameters);
   const ImageDifference difference = compare_images(fast.image, judge.image, 2.0 / 255.0);
   EXPECT_EQ(difference.pixels_over, 0U) << what << ", largest difference " << difference.max;
@@ -56,18 +60,18 @@ Material crystal(int n, double step, double shift) {
 
 TEST(BallHits, KeepsWhatCanBeSeenInOrder) {
   BallHits hits(1e-3);
-  hits.add({5.0, 1, 0.5});
-  hits.add({3.0, 2, 0.5});
-  hits.add({3.0, 2, 0.5});  // proposed twice
+  hits.add(5.0, 1, 0.5);
+  hits.add(3.0, 2, 0.5);
+  hits.add(3.0, 2, 0.5);  // proposed twice
   EXPECT_EQ(hits.hits().size(), 2U);
   EXPECT_EQ(hits.hits()[0].ball, 2U);
   EXPECT_TRUE(std::isinf(hits.reach()));
-  hits.add({4.0, 3, 1.0});
+  hits.add(4.0, 3, 1.0);
   EXPECT_EQ(hits.hits().size(), 2U);  // 5.0 is hidden now
   EXPECT_EQ(hits.reach(), 4.0);
-  hits.add({4.5, 4, 1.0});
+  hits.add(4.5, 4, 1.0);
   EXPECT_EQ(hits.hits().size(), 2U);
-  hits.add({4.0, 0, 1.0});  // at the same length the lower index is in front
+  hits.add(4.0, 0, 1.0);  // at the same length the lower index is in front
   EXPECT_EQ(hits.hits().back().ball, 0U);
 }
 
