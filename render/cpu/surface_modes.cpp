@@ -45,10 +45,11 @@ void raster_tile(const Scene& scene, const Camera& camera, const ProjectedVertic
     const int end_column = std::min(tile.end_column, box.last_column + 1);
     const int end_row = std::min(tile.end_row, box.last_row + 1);
     for (int row = std::max(tile.first_row, box.first_row); row < end_row; ++row) {
-      const TriangleRaster::Row sides = raster.row(camera.y_of(row));
+      const TriangleRaster::Row sides = raster.row(camera.y_of(row - surface_ray_shift * surface_ray_lift));
       for (int column = std::max(tile.first_column, box.first_column); column < end_column; ++column) {
         Crossing crossing{};
-        if (raster.crosses(sides, camera.x_of(column), crossing)) cross(tile.at(column, row), triangle, crossing);
+        if (raster.crosses(sides, camera.x_of(column + surface_ray_shift), crossing))
+          cross(tile.at(column, row), triangle, crossing);
       }
     }
   }

@@ -10,6 +10,12 @@
 
 namespace atomesh {
 
+// Rays pass this much of a pixel right of the pixel's centre, and ray_lift of that above it: far beyond the rounding of
+// double and far below what can be seen. Of a picture aligned with a crystal no ray then meets an edge or a vertex
+// exactly, where rounding would decide triangle by triangle.
+inline constexpr double surface_ray_shift = 0x1p-28;
+inline constexpr double surface_ray_lift = 0x1p-6;
+
 // A crossing of the ray's half in front of the eye.
 struct Crossing {
   double depth;
@@ -18,7 +24,7 @@ struct Crossing {
 
 // With h the vertices' homogeneous image-plane coordinates, (x, y, 1) · (h_i × h_j) tells on which side of the edge ij
 // the ray through (x, y) passes; its terms come in the order i < j, so that both triangles at an edge see the same
-// number, and a zero is resolved as if the ray stood an infinitely small ε further right and ε² further up.
+// number; a zero is resolved as if the ray stood an infinitely small ε further right and ε² further up.
 class TriangleRaster {
  public:
   TriangleRaster(const ProjectedVertices& vertices, const Triangle& corners, bool perspective);
