@@ -15,11 +15,6 @@ bool better(const Match& a, const Match& b) {
   return a.squares < b.squares;
 }
 
-// Less than this share of what is near fits: the centre is no atom of the crystal.
-bool lost(const Match& match) {
-  return match.kind == no_kind || match.near_matched * 3 < match.near_stray * 2;
-}
-
 }  // namespace
 
 void FeatureComparer::fill(Match& match, std::uint16_t kind_number, const Vec3& shift,
@@ -112,7 +107,7 @@ const Match& FeatureComparer::match_shifted(std::uint16_t species, const std::ve
   }
   if (best_.kind == no_kind) return best_;
   refine(neighbours);
-  if (lost(best_)) {
+  if (best_.lost()) {
     // Every neighbour taken for every entry of the first shell proposes a shift.
     const double far2 = features_.pair_distance * features_.pair_distance;
     for (const std::uint16_t number : features_.kinds_of[species]) {
@@ -134,7 +129,7 @@ const Match& FeatureComparer::match_shifted(std::uint16_t species, const std::ve
     }
     refine(neighbours);
   }
-  if (lost(best_)) best_.kind = no_kind;
+  if (best_.lost()) best_.kind = no_kind;
   return best_;
 }
 

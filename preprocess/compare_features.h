@@ -26,6 +26,8 @@ struct Match {
   std::size_t matched = 0;
   double squares = 0.0;  // Å², Σ over the matched of |d + shift - offset|²
 
+  // At least half of what is near the centre fits nowhere: the centre is no atom of this crystal.
+  bool lost() const { return kind == no_kind || (near_stray > 0 && near_stray >= near_matched); }
   // Most of what is near the centre is where the crystal has it: the match can be believed.
   bool reliable() const { return kind != no_kind && near_matched >= 2 && near_matched >= 2 * near_stray; }
 };
