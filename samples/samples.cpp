@@ -72,6 +72,15 @@ const std::vector<Entry>& entries() {
         {114221, 1484, 305, 16, 337, 216}},
        8000,
        grow_cacuo2_spiral},
+      {{"sponge",
+        "Sponge",
+        534841,
+        "Silicon of a sponge of silicon (30 vol. %) and oxide (the empty space): spinodal decomposition by a "
+        "Cahn-Hilliard phase-field run, filled with diamond sites moved at random by up to 0.12 Å along each axis; no "
+        "unit cell",
+        {602869, 2748, 1015, 22, 471, 578}},
+       20000,
+       grow_sponge},
       {{"quantum-dot",
         "Quantum dot",
         86338,
