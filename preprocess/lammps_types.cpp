@@ -1,6 +1,7 @@
 #include "preprocess/lammps_types.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "core/elements.h"
@@ -71,15 +72,32 @@ void name_types(const Input& input, const TypeNames& names, Atoms& atoms, ReadRe
 void sort_by_id(const Input& input, Atoms& atoms, const std::function<std::uint64_t(std::size_t)>& line_of) {
   const std::vector<std::int64_t>& ids = atoms.ids;
   if (ids.empty() || std::is_sorted(ids.begin(), ids.end(), std::less_equal<>())) return;
-  std::vector<Index> order(ids.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(),
-            [&ids](Index a, Index b) { return ids[a] != ids[b] ? ids[a] < ids[b] : a < b; });
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    if (ids[order[i]] != ids[order[i - 1]]) continue;
-    throw InputError(input.path, line_of(order[i]),
-                     "atom id " + std::to_string(ids[order[i]]) + " stands on line " +
-                         std::to_string(line_of(order[i - 1])) + " already; expected every id once");
+  const auto twice = [&](std::size_t first, std::size_t second) {
+    throw InputError(input.path, line_of(second),
+                     "atom id " + std::to_string(ids[second]) + " stands on line " + std::to_string(line_of(first)) +
+                         " already; expected every id once");
+  };
+  const auto [low, high] = std::minmax_element(ids.begin(), ids.end());
+  // As unsigned: the difference of two ids may not fit a signed number.
+  const std::uint64_t range = static_cast<std::uint64_t>(*high) - static_cast<std::uint64_t>(*low);
+  std::vector<Index> order;
+  if (range / 4 <= ids.size()) {
+    // Nearly all ids of a range: every atom has its place.
+    std::vector<Index> place(range + 1, no_index);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      Index& at = place[static_cast<std::uint64_t>(ids[i]) - static_cast<std::uint64_t>(*low)];
+      if (at != no_index) twice(at, i);
+      at = static_cast<Index>(i);
+    }
+    order.reserve(ids.size());
+    std::copy_if(place.begin(), place.end(), std::back_inserter(order), [](Index i) { return i != no_index; });
+  } else {
+    order.resize(ids.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(), [&ids](Index a, Index b) { return ids[a] < ids[b]; });
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      if (ids[order[i]] == ids[order[i - 1]]) twice(order[i - 1], order[i]);
+    }
   }
   atoms = atoms.subset(order);
 }

@@ -149,7 +149,7 @@ class DatReader {
     const std::int64_t declared = integer_of(input_, basis_line_, header[1], "N of \"basis N\"");
     if (declared < 1) fail(input_, basis_line_, "at least 1 basis atom", std::to_string(declared));
     const std::size_t count =
-        checked_count(input_, basis_line_, declared, input_.text.size() - lines_.offset(), 8, "basis atom");
+        checked_count(input_, basis_line_, declared, input_.text.size() - lines_.offset(), 1, "basis atom");
     for (std::size_t i = 0; i < count; ++i) {
       const std::string expected =
           "basis atom " + std::to_string(i + 1) + " of " + std::to_string(count) + ", \"species x y z\"";

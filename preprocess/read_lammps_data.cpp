@@ -119,7 +119,7 @@ class DataReader {
     if (ends_with(1, {"atoms"})) {
       declared_atoms_ = integer_of(input_, line, fields[0], "the number of atoms");
       atoms_line_ = line;
-      checked_count(input_, line, declared_atoms_, input_.text.size() - lines_.offset(), 10, "atom");
+      checked_count(input_, line, declared_atoms_, input_.text.size() - lines_.offset(), 1, "atom");
     } else if (ends_with(1, {"atom", "types"})) {
       types_ = integer_of(input_, line, fields[0], "the number of atom types");
     } else if (ends_with(3, {"xy", "xz", "yz"})) {

@@ -139,7 +139,7 @@ class DumpReader {
     if (header.count_line == 0) fail(input_, header.columns_line, "ITEM: NUMBER OF ATOMS before ITEM: ATOMS", "none");
     if (header.bounds_line == 0) fail(input_, header.columns_line, "ITEM: BOX BOUNDS before ITEM: ATOMS", "none");
     header.atoms =
-        checked_count(input_, header.count_line, header.declared, input_.text.size() - header.atoms_offset, 2, "atom");
+        checked_count(input_, header.count_line, header.declared, input_.text.size() - header.atoms_offset, 1, "atom");
   }
 
   void skip_atoms(const Header& header) {

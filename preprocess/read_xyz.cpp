@@ -49,7 +49,7 @@ FrameIndex index_frames(const Input& input) {
       std::int64_t declared = 0;
       if (fields.size() != 1 || !parse_integer(fields[0], declared)) fail(input, count_line, expected, quoted(line));
       const std::size_t atoms =
-          checked_count(input, count_line, declared, input.text.size() - lines.offset(), 8, "atom");
+          checked_count(input, count_line, declared, input.text.size() - lines.offset(), 1, "atom");
       for (std::size_t i = 0; i <= atoms; ++i) {
         if (lines.next(line)) {
           progress.at(lines.offset());

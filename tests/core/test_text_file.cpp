@@ -1,0 +1,142 @@
+// Lines, fields and numbers of text; files that appear whole or not at all.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/text_file.h"
+#include "tests/support/temp_folder.h"
+
+namespace atomesh::test {
+namespace {
+
+std::vector<std::string> lines_of(std::string_view text) {
+  LineReader reader(text);
+  std::vector<std::string> lines;
+  std::string_view line;
+  while (reader.next(line)) {
+    lines.emplace_back(line);
+    EXPECT_EQ(reader.line_number(), lines.size());
+  }
+  EXPECT_EQ(reader.offset(), text.size());
+  return lines;
+}
+
+TEST(LineReader, EveryEndingOfALine) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(lines_of(""), Lines{});
+  EXPECT_EQ(lines_of("\n"), Lines{""});
+  EXPECT_EQ(lines_of("a\nb"), (Lines{"a", "b"}));
+  EXPECT_EQ(lines_of("a\r\n\r\nb\r\n"), (Lines{"a", "", "b"}));
+  EXPECT_EQ(lines_of("a\r\rb\n\nc\n"), (Lines{"a\r\rb", "", "c"}));
+}
+
+TEST(Fields, AreSeparatedByAnyBlanks) {
+  EXPECT_EQ(split_fields(" a\t bc  \r"), (std::vector<std::string_view>{"a", "bc"}));
+  EXPECT_TRUE(split_fields(" \t ").empty());
+  std::string_view line = "x  y";
+  EXPECT_EQ(next_field(line), "x");
+  EXPECT_EQ(next_field(line), "y");
+  EXPECT_EQ(next_field(line), "");
+  EXPECT_EQ(next_field(line), "");
+}
+
+TEST(ParseReal, TakesFiniteNumbersAndNothingElse) {
+  double value = 0.0;
+  const std::pair<const char*, double> good[] = {{"1", 1.0},
+                                                 {"-0", -0.0},
+                                                 {"+2.5", 2.5},
+                                                 {".5", 0.5},
+                                                 {"5.", 5.0},
+                                                 {"1e3", 1000.0},
+                                                 {"-1.25E-2", -0.0125},
+                                                 {"0.1", 0.1},
+                                                 {"1e-400", 0.0},
+                                                 {"4.9e-324", 4.9e-324},
+                                                 {"1.7976931348623157e308", 1.7976931348623157e308}};
+  for (const auto& [text, expected] : good) {
+    ASSERT_TRUE(parse_real(text, value)) << text;
+    EXPECT_EQ(value, expected) << text;
+    EXPECT_EQ(std::signbit(value), std::signbit(expected)) << text;
+  }
+  value = 7.0;
+  for (const char* bad :
+       {"",     "+",   "-",    ".",        "e5",    "1e",     "1x",   "1 ",  " 1",  "1,5", "nan", "NaN",
+        "-nan", "inf", "-inf", "infinity", "1e999", "-1e999", "0x10", "1d3", "+-1", "++1", "--1", "1.2.3"}) {
+    EXPECT_FALSE(parse_real(bad, value)) << bad;
+  }
+  EXPECT_EQ(value, 7.0);
+}
+
+TEST(ParseInteger, TakesWholeNumbersThatFit) {
+  std::int64_t value = 0;
+  EXPECT_TRUE(parse_integer("-9223372036854775808", value));
+  EXPECT_EQ(value, std::numeric_limits<std::int64_t>::min());
+  EXPECT_TRUE(parse_integer("+17", value));
+  EXPECT_EQ(value, 17);
+  for (const char* bad : {"", "+", "+-1", "1.0", "1e3", "9223372036854775808", "12a", "0x1"}) {
+    EXPECT_FALSE(parse_integer(bad, value)) << bad;
+  }
+}
+
+TEST(MappedFile, GivesTheBytes) {
+  const TempFolder folder;
+  const MappedFile file(folder.file("a", std::string_view("x\0y", 3)));
+  EXPECT_EQ(file.bytes(), std::string_view("x\0y", 3));
+  EXPECT_EQ(MappedFile(folder.file("empty", "")).bytes().size(), 0u);
+}
+
+TEST(MappedFile, RefusesWhatIsNoFile) {
+  const TempFolder folder;
+  EXPECT_THROW(MappedFile(folder / "missing"), InputError);
+  EXPECT_THROW(MappedFile(folder.path().string()), InputError);
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(MappedFile(folder / "pipe"), InputError);  // and does not wait for a writer
+}
+
+TEST(AtomicFile, AppearsOnCommit) {
+  const TempFolder folder;
+  AtomicFile file(folder / "a");
+  file.write("new");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+  file.commit();
+  EXPECT_EQ(read_whole(folder / "a"), "new");
+}
+
+TEST(AtomicFile, WithoutCommitTheOldFileStays) {
+  const TempFolder folder;
+  folder.file("a", "old");
+  {
+    AtomicFile file(folder / "a");
+    file.write("half");
+  }
+  EXPECT_EQ(read_whole(folder / "a"), "old");
+  const std::filesystem::directory_iterator entries(folder.path());
+  EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
+}
+
+TEST(AtomicFile, FollowsLinksAndWritesThroughDevices) {
+  const TempFolder folder;
+  folder.file("target", "old");
+  std::filesystem::create_symlink(folder / "target", folder / "link");
+  AtomicFile file(folder / "link");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_whole(folder / "target"), "new");
+  AtomicFile device("/dev/null");
+  device.write("gone");
+  device.commit();
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, SaysWhyItCannotBeWritten) {
+  const TempFolder folder;
+  EXPECT_THROW(AtomicFile(folder.path().string()), Error);
+  EXPECT_THROW(AtomicFile(folder / "no/such/folder"), Error);
+}
+
+}  // namespace
+}  // namespace atomesh::test
