@@ -30,8 +30,8 @@ std::size_t planned_sites(std::size_t atoms) {
 // Picks connected groups of sites, far from the faces and from each other.
 class SitePicker {
  public:
-  SitePicker(const Atoms& crystal, std::uint64_t seed)
-      : crystal_(crystal), bounds_(bounds_of(crystal.positions)), random_(seed) {
+  SitePicker(const Atoms& crystal, const BlockShape& shape, std::uint64_t seed)
+      : crystal_(crystal), shape_(shape), bounds_(bounds_of(crystal.positions)), random_(seed) {
     for (std::size_t i = 0; i < crystal.size(); ++i) {
       const Vec3& p = crystal.positions[i];
       if (glm::all(glm::greaterThan(p, bounds_.min + margin)) && glm::all(glm::lessThan(p, bounds_.max - margin))) {
@@ -65,18 +65,26 @@ class SitePicker {
     return group;
   }
 
-  // The crystal is in build_block's order, so a neighbour is at most one cell away; a scan of the inner sites is quick
-  // enough for the few groups a sample has.
+  // The crystal is in build_block's order, and an inner site's neighbours are in its own cell or one that touches it.
   std::vector<Index> neighbours(Index site) const {
     std::vector<Index> result;
-    for (std::size_t i = 0; i < crystal_.size(); ++i) {
-      const double d = glm::distance(crystal_.positions[i], crystal_.positions[site]);
-      if (d > 0.5 * bond && d < 1.1 * bond) result.push_back(static_cast<Index>(i));
+    const std::size_t nx = shape_.cells[0];
+    const std::size_t ny = shape_.cells[1];
+    const std::size_t cell = site / 8;
+    const std::size_t first = cell - (ny + 1) * nx - 1;
+    for (std::size_t z = 0; z < 3; ++z) {
+      for (std::size_t y = 0; y < 3; ++y) {
+        for (std::size_t atom = 8 * (first + (z * ny + y) * nx); atom < 8 * (first + (z * ny + y) * nx + 3); ++atom) {
+          const double d = glm::distance(crystal_.positions[atom], crystal_.positions[site]);
+          if (d > 0.5 * bond && d < 1.1 * bond) result.push_back(static_cast<Index>(atom));
+        }
+      }
     }
     return result;
   }
 
   const Atoms& crystal_;
+  BlockShape shape_;
   Bounds bounds_;
   Random random_;
   std::vector<Index> inner_;
@@ -89,7 +97,8 @@ Sample grow_diamond_vacancy(std::size_t atoms, std::uint64_t seed, Progress& pro
   Sample sample;
   sample.unit_cell = zinc_blende_cell("C", "C", edge);
   const std::size_t planned = planned_sites(atoms);
-  const Atoms crystal = build_block(*sample.unit_cell, diamond_block(static_cast<double>(atoms + planned)));
+  const BlockShape shape = diamond_block(static_cast<double>(atoms + planned));
+  const Atoms crystal = build_block(*sample.unit_cell, shape);
 
   // Of eighteen vacancies four are one cluster, six are three pairs, eight stand alone.
   std::vector<std::size_t> sizes(planned / 18 + (planned % 18 >= 9 ? 1 : 0), 4);
@@ -97,7 +106,7 @@ Sample grow_diamond_vacancy(std::size_t atoms, std::uint64_t seed, Progress& pro
   sizes.insert(sizes.end(), pairs, 2);
   sizes.insert(sizes.end(), planned - 4 * (sizes.size() - pairs) - 2 * pairs, 1);
 
-  SitePicker picker(crystal, seed);
+  SitePicker picker(crystal, shape, seed);
   std::vector<bool> removed(crystal.size(), false);
   for (const std::size_t size : sizes) {
     progress.check();
@@ -113,11 +122,12 @@ Sample grow_diamond_vacancy(std::size_t atoms, std::uint64_t seed, Progress& pro
 Sample grow_diamond_a_centers(std::size_t atoms, std::uint64_t seed, Progress& progress) {
   Sample sample;
   sample.unit_cell = zinc_blende_cell("C", "C", edge);
-  sample.atoms = build_block(*sample.unit_cell, diamond_block(static_cast<double>(atoms)));
+  const BlockShape shape = diamond_block(static_cast<double>(atoms));
+  sample.atoms = build_block(*sample.unit_cell, shape);
   const std::uint16_t nitrogen = sample.atoms.add_species("N");
 
   const Atoms crystal = sample.atoms;
-  SitePicker picker(crystal, seed);
+  SitePicker picker(crystal, shape, seed);
   for (std::size_t pair = 0; pair < planned_sites(atoms) / 2; ++pair) {
     progress.check();
     const std::vector<Index> sites = picker.pick(2);
