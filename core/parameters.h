@@ -88,8 +88,8 @@ struct SurfaceParameters {
 
 // B.6.3.4. Opacity of a pixel = min(1, alpha_length · thickness), thickness the length of the ray inside the sample.
 struct XrayParameters {
-  double alpha_length = 0.005;  // 1/Å
-  Vec3f color{1.0F, 1.0F, 1.0F};
+  double alpha_length = 0.005;      // 1/Å
+  Vec3f color{0.05F, 0.05F, 0.1F};  // dark, to be seen before the white background
   bool operator==(const XrayParameters&) const = default;
 };
 

@@ -138,7 +138,7 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
       material.mesh =
           stage("carve", [&] { return carve(material.mesh, options.carve_options, report.carve, progress); });
     }
-    if (wanted.surface || wanted.defects) {
+    if (wanted.surface) {
       material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh); });
     }
     stage("measure", [&] {

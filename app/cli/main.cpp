@@ -21,7 +21,13 @@ struct Subcommand {
 
 constexpr Subcommand subcommands[] = {
     {"sample", "Grow a sample material with known defects", add_sample},
+    {"preprocess", "Atoms file -> volume, surface and crystal defects in a .crb or .crt", add_preprocess},
+    {"render", "Draw a picture of a material", add_render},
+    {"defects", "List the clusters of defective atoms and sites", add_defects},
+    {"info", "Say what a file holds and whether it is sound", add_info},
+    {"convert", "Convert between the formats that are read and .dat, .xyz, .crb, .crt, .vtu", add_convert},
     {"compare", "Compare two pictures", add_compare},
+    {"bench", "Measure speed, side by side with published figures", add_bench},
 };
 
 constexpr int exit_usage = 1;

@@ -1,0 +1,197 @@
+// atomesh info FILE: what a file holds, how it came to be, whether it is sound.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/cli/commands.h"
+#include "app/cli/load_material.h"
+#include "app/cli/machine.h"
+#include "app/cli/pipeline_options.h"
+#include "app/cli/session.h"
+#include "app/cli/species_count.h"
+#include "app/cli/text_table.h"
+#include "core/error.h"
+
+namespace atomesh::cli {
+namespace {
+
+struct InfoArguments {
+  std::string input;
+  PipelineOptions options;
+};
+
+struct Range {
+  std::string name;
+  double min;
+  double max;
+};
+
+template <class T>
+void add_range(std::vector<Range>& ranges, std::string name, const std::vector<T>& values) {
+  if (values.empty()) return;
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  ranges.push_back({std::move(name), static_cast<double>(*min), static_cast<double>(*max)});
+}
+
+std::vector<Range> ranges_of(const Material& material) {
+  std::vector<Range> ranges;
+  add_range(ranges, "positional", material.defects.positional);
+  add_range(ranges, "vacancy", material.defects.vacancy);
+  add_range(ranges, "extra", material.defects.extra);
+  for (const Column& column : material.atoms.columns) add_range(ranges, column.name, column.values);
+  return ranges;
+}
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+std::size_t memory_of(const Material& m) {
+  std::size_t bytes = bytes_of(m.atoms.positions) + bytes_of(m.atoms.species) + bytes_of(m.atoms.ids);
+  for (const Column& column : m.atoms.columns) bytes += bytes_of(column.values);
+  bytes += bytes_of(m.mesh.vertices) + bytes_of(m.mesh.tetrahedra) + bytes_of(m.mesh.vertex_atom);
+  bytes += bytes_of(m.surface.triangles) + bytes_of(m.surface.tetrahedron) + bytes_of(m.surface.face);
+  bytes += bytes_of(m.defects.positional) + bytes_of(m.defects.vacancy) + bytes_of(m.defects.extra);
+  return bytes + bytes_of(m.defects.vacancies) + bytes_of(m.defects.extras);
+}
+
+std::vector<std::string> problems_of(const Material& material) {
+  std::vector<std::string> problems = validate(material.mesh);
+  for (std::string& problem : validate(material.surface, material.mesh)) problems.push_back(std::move(problem));
+  return problems;
+}
+
+Json box_json(const Material& material) {
+  const Box& box = material.atoms.box;
+  const Bounds bounds = bounds_of(material.atoms.positions);
+  return Json::object({{"present", box.present()},
+                       {"origin", box.origin},
+                       {"vectors", Json::array({box.vectors[0], box.vectors[1], box.vectors[2]})},
+                       {"periodic", Json::array({box.periodic[0], box.periodic[1], box.periodic[2]})},
+                       {"bounds", Json::array({bounds.min, bounds.max})}});
+}
+
+Json provenance_json(const Provenance& provenance) {
+  Json options = Json::object();
+  for (const auto& [name, value] : provenance.options) options.set(name, value);
+  Json counts = Json::object();
+  for (const auto& [name, count] : provenance.counts) counts.set(name, count);
+  Json stages = Json::array();
+  for (const StageTime& stage : provenance.stages) {
+    stages.push(Json::object({{"name", stage.name}, {"ms", stage.ms}}));
+  }
+  return Json::object({{"program", provenance.program},
+                       {"input", provenance.input},
+                       {"options", options},
+                       {"counts", counts},
+                       {"stages", stages}});
+}
+
+// "crb" and "crt" are material files; an atoms file says how it was read.
+std::string kind_of(const std::string& path, const LoadedMaterial& loaded) {
+  if (loaded.report) return loaded.report->read.format;
+  return std::filesystem::path(path).extension() == ".crt" ? "crt" : "crb";
+}
+
+void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, const std::vector<SectionInfo>& sections,
+                const std::vector<std::string>& problems, Session& session) {
+  const Material& material = loaded.material;
+  const Bounds bounds = bounds_of(material.atoms.positions);
+  const Box& box = material.atoms.box;
+  session.print("{} ({})", arguments.input, kind_of(arguments.input, loaded));
+  session.print("atoms        {} ({})", grouped(material.atoms.size()), species_text(material.atoms));
+  session.print("tetrahedra   {}", grouped(material.mesh.tetrahedra.size()));
+  session.print("triangles    {}", grouped(material.surface.triangles.size()));
+  session.print("bounds       {:.4f} {:.4f} {:.4f} to {:.4f} {:.4f} {:.4f} Å", bounds.min.x, bounds.min.y, bounds.min.z,
+                bounds.max.x, bounds.max.y, bounds.max.z);
+  if (box.present()) {
+    session.print("box          {:.4f} × {:.4f} × {:.4f} Å, periodic: {}{}{}", glm::length(box.vectors[0]),
+                  glm::length(box.vectors[1]), glm::length(box.vectors[2]), box.periodic[0] ? "x" : "-",
+                  box.periodic[1] ? "y" : "-", box.periodic[2] ? "z" : "-");
+  }
+  if (material.unit_cell) session.print("unit cell    {} basis atoms", material.unit_cell->basis.size());
+  if (material.defects.present()) {
+    session.print("defects      {} vacancies, {} extra atoms", grouped(material.defects.vacancies.size()),
+                  grouped(material.defects.extras.size()));
+  }
+  session.print("memory       {}", byte_size(memory_of(material)));
+  const std::vector<Range> ranges = ranges_of(material);
+  if (!ranges.empty()) {
+    TextTable table({"scalar", "min", "max"});
+    for (const Range& range : ranges) {
+      table.row({range.name, fmt::format("{:.6g}", range.min), fmt::format("{:.6g}", range.max)});
+    }
+    session.print("");
+    session.print_text(table.text());
+  }
+  const Provenance& provenance = material.provenance;
+  session.print("\nmade by {} from {}", provenance.program, provenance.input);
+  for (const auto& [name, value] : provenance.options) {
+    if (!value.empty()) session.print("  {} = {}", name, value);
+  }
+  if (!sections.empty()) {
+    TextTable table({"section", "size", "in the file"});
+    for (const SectionInfo& section : sections) {
+      table.row({section.name, byte_size(section.bytes), byte_size(section.stored_bytes)});
+    }
+    session.print("");
+    session.print_text(table.text());
+  }
+  session.print("\n{}", problems.empty() ? "valid: mesh and surface keep every invariant" : "NOT valid:");
+  for (const std::string& problem : problems) session.print("  {}", problem);
+}
+
+int run_info(const InfoArguments& arguments, const CLI::App& app, Session& session) {
+  const LoadedMaterial loaded = load_material(arguments.input, {}, app, arguments.options, session);
+  const Material& material = loaded.material;
+  const std::string kind = kind_of(arguments.input, loaded);
+  const std::vector<SectionInfo> sections = kind == "crb" ? list_sections(arguments.input) : std::vector<SectionInfo>();
+  session.progress().stage("validate");
+  const std::vector<std::string> problems = problems_of(material);
+  print_info(arguments, loaded, sections, problems, session);
+
+  if (session.json_wanted()) {
+    Json scalars = Json::object();
+    for (const Range& range : ranges_of(material)) scalars.set(range.name, Json::array({range.min, range.max}));
+    Json section_list = Json::array();
+    for (const SectionInfo& section : sections) {
+      section_list.push(
+          Json::object({{"name", section.name}, {"bytes", section.bytes}, {"stored_bytes", section.stored_bytes}}));
+    }
+    Json problem_list = Json::array();
+    for (const std::string& problem : problems) problem_list.push(problem);
+    session.write_json(Json::object({{"file", arguments.input},
+                                     {"kind", kind},
+                                     {"version", material.provenance.program},
+                                     {"bytes", std::filesystem::file_size(arguments.input)},
+                                     {"atoms", material.atoms.size()},
+                                     {"tetrahedra", material.mesh.tetrahedra.size()},
+                                     {"triangles", material.surface.triangles.size()},
+                                     {"box", box_json(material)},
+                                     {"species", species_json(material.atoms)},
+                                     {"scalars", scalars},
+                                     {"vacancies", material.defects.vacancies.size()},
+                                     {"extras", material.defects.extras.size()},
+                                     {"memory_bytes", memory_of(material)},
+                                     {"provenance", provenance_json(material.provenance)},
+                                     {"sections", section_list},
+                                     {"valid", problems.empty()},
+                                     {"problems", problem_list},
+                                     {"peak_memory_mb", peak_memory_mb()}}));
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& app) {
+  auto arguments = std::make_shared<InfoArguments>();
+  app.add_option("FILE", arguments->input, "A .crb or .crt, or an atoms file to preprocess on the way")->required();
+  add_pipeline_options(app, arguments->options);
+  app.footer("Example:\n  atomesh info nacl.crb --json -\n");
+  return [arguments, &app](Session& session) { return run_info(*arguments, app, session); };
+}
+
+}  // namespace atomesh::cli

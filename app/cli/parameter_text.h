@@ -1,0 +1,20 @@
+// The display parameters as text: the reference behind --help-parameters, and what a picture carries with it.
+#pragma once
+
+#include <string>
+
+#include "core/atoms.h"
+#include "core/parameters.h"
+
+namespace atomesh::cli {
+
+// Every row of parameter_table(): key, type, default, range, unit and help, under the headings of its groups.
+std::string parameter_reference();
+
+// "key=value" lines that --set reads back to exactly these parameters; species keys where they say something.
+std::string parameter_lines(const Parameters& parameters);
+
+// Throws UsageError when `key` names a species ("atoms.color.Nq") that the atoms do not have.
+void check_species_key(const std::string& key, const Atoms& atoms);
+
+}  // namespace atomesh::cli

@@ -1,0 +1,184 @@
+// atomesh render FILE -o IMG.png: one picture, with what made it inside the file.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "app/cli/channel_files.h"
+#include "app/cli/commands.h"
+#include "app/cli/load_material.h"
+#include "app/cli/machine.h"
+#include "app/cli/output_file.h"
+#include "app/cli/parameter_text.h"
+#include "app/cli/picture_comparison.h"
+#include "app/cli/pipeline_options.h"
+#include "app/cli/session.h"
+#include "app/cli/text_table.h"
+#include "app/cli/text_values.h"
+#include "core/camera.h"
+#include "core/error.h"
+#include "core/image.h"
+#include "core/parameter_file.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+
+namespace atomesh::cli {
+namespace {
+
+struct RenderArguments {
+  std::string input;
+  std::string output;
+  std::string mode;
+  std::string size = "800x600";
+  std::string parameter_file;
+  std::vector<std::string> settings;
+  std::string view;
+  std::string renderer = "auto";
+  std::string reference;
+  double tolerance = 0.0;
+  bool transparent = false;
+  std::vector<std::string> channels;
+  bool help_parameters = false;
+  PipelineOptions options;
+};
+
+// The defaults, then the file, then --mode and --view, then each --set: the more particular wins.
+Parameters chosen_parameters(const RenderArguments& arguments) {
+  Parameters parameters;
+  if (!arguments.parameter_file.empty()) parameters = read_crf(arguments.parameter_file);
+  if (!arguments.mode.empty()) parameters.mode = mode_from_name(arguments.mode);
+  if (!arguments.view.empty()) set_view(parameters, arguments.view);
+  for (const std::string& setting : arguments.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) {
+      throw UsageError("--set: expected key=value, got \"" + setting +
+                       "\"; put FILE before --set, and see --help-parameters for the keys");
+    }
+    set_parameter(parameters, setting.substr(0, equals), std::string_view(setting).substr(equals + 1));
+  }
+  if (arguments.transparent) parameters.background.a = 0.0F;
+  return parameters;
+}
+
+std::vector<std::pair<std::string, std::string>> picture_text(const RenderArguments& arguments,
+                                                              const Parameters& parameters, const Material& material,
+                                                              std::string_view renderer) {
+  std::string origin;
+  const Provenance& provenance = material.provenance;
+  if (!provenance.input.empty()) origin += "input=" + provenance.input + "\n";
+  for (const auto& [key, value] : provenance.options) origin += key + "=" + value + "\n";
+  return {{"Software", "atomesh " ATOMESH_VERSION},
+          {"Source", std::filesystem::path(arguments.input).filename().string()},
+          {"atomesh renderer", std::string(renderer)},
+          {"atomesh parameters", parameter_lines(parameters)},
+          {"atomesh provenance", origin}};
+}
+
+std::string difference_path(const std::string& output) {
+  std::filesystem::path path(output);
+  path.replace_filename(path.stem().string() + "-difference.png");
+  return path.string();
+}
+
+int run_render(const RenderArguments& arguments, const CLI::App& app, Session& session) {
+  if (arguments.help_parameters) {
+    session.print_text(parameter_reference());
+    return exit_done;
+  }
+  if (arguments.input.empty()) throw UsageError("render: expected FILE, a .crb, .crt or atoms file");
+  if (arguments.output.empty()) throw UsageError("render: expected -o IMG.png");
+  check_output(arguments.output, {".png"});
+  const auto [width, height] = parse_size(arguments.size);
+  const Parameters parameters = chosen_parameters(arguments);
+  const Renderer& renderer = find_renderer(arguments.renderer);
+  ChannelFiles channel_files(arguments.channels, parameters.mode);
+
+  using clock = std::chrono::steady_clock;
+  const auto elapsed_since = [](clock::time_point since) {
+    return std::chrono::duration<double, std::milli>(clock::now() - since).count();
+  };
+  const auto start = clock::now();
+  const LoadedMaterial loaded =
+      load_material(arguments.input, parts_needed(parameters), app, arguments.options, session);
+  for (const std::string& setting : arguments.settings) {
+    check_species_key(setting.substr(0, setting.find('=')), loaded.material.atoms);
+  }
+
+  const auto scene_start = clock::now();
+  const Scene scene = make_scene(loaded.material, parameters, session.progress());
+  const double scene_ms = elapsed_since(scene_start);
+  const Camera camera = make_camera(parameters, scene.bounds, width, height);
+  RenderStats stats;
+  const Image image = render(renderer, scene, camera, parameters, stats, channel_files.channels(), session.progress());
+  session.progress().check();
+  write_png(arguments.output, image, picture_text(arguments, parameters, loaded.material, renderer.name()));
+  channel_files.write(width, height);
+  const double total_ms = elapsed_since(start);
+
+  session.print("{}: {}, renderer {}, {}x{}; load {} ms, setup {} ms, render {} ms, total {} ms", arguments.output,
+                mode_name(parameters.mode), renderer.name(), width, height, milliseconds(loaded.ms),
+                milliseconds(scene_ms + stats.setup_ms), milliseconds(stats.render_ms), milliseconds(total_ms));
+  Json json = Json::object({{"mode", mode_name(parameters.mode)},
+                            {"renderer", renderer.name()},
+                            {"size", Json::array({width, height})},
+                            {"ms", Json::object({{"load", loaded.ms},
+                                                 {"setup", scene_ms + stats.setup_ms},
+                                                 {"render", stats.render_ms},
+                                                 {"total", total_ms}})},
+                            {"tetrahedra", scene.tetrahedra.size()},
+                            {"triangles", scene.surface.size()},
+                            {"atoms", loaded.material.atoms.size()},
+                            {"steps", stats.steps},
+                            {"peak_memory_mb", peak_memory_mb()},
+                            {"output", Json::object({{"file", arguments.output},
+                                                     {"bytes", std::filesystem::file_size(arguments.output)}})}});
+  int exit_code = exit_done;
+  if (!arguments.reference.empty()) {
+    const PictureComparison comparison = compare_pictures(arguments.output, arguments.reference, arguments.tolerance,
+                                                          difference_path(arguments.output), false, session);
+    json.set("reference", comparison.json);
+    if (!comparison.passed) exit_code = exit_comparison_failed;
+  }
+  session.write_json(json);
+  return exit_code;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& app) {
+  auto arguments = std::make_shared<RenderArguments>();
+  app.add_option("FILE", arguments->input, "A .crb or .crt, or an atoms file to preprocess on the way");
+  app.add_option("-o,--output", arguments->output, "The picture to write")->type_name("IMG.png");
+  app.add_option("--mode", arguments->mode, "volume-surface, volume, surface, xray or atoms [volume-surface]")
+      ->type_name("MODE");
+  app.add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
+  app.add_option("--params", arguments->parameter_file, "Display and rendering parameters")->type_name("F.crf");
+  app.add_option("--set", arguments->settings, "Set parameters; later ones win, and all win over --params")
+      ->type_name("KEY=VALUE…");
+  app.add_option("--view", arguments->view,
+                 "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees")
+      ->type_name("VIEW");
+  app.add_option("--renderer", arguments->renderer, "auto, cpu, or reference: the judge, exact and slow")
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_flag("--transparent", arguments->transparent, "Leave the background transparent");
+  app.add_option("--channel", arguments->channels,
+                 "Also write numbers per pixel: thickness (Å, mode xray), depth (Å) or id (modes surface, atoms)")
+      ->type_name("NAME=FILE.npy");
+  app.add_option("--reference", arguments->reference,
+                 "Compare the picture with this one; where they differ, exit with 4 and leave IMG-difference.png")
+      ->type_name("IMG");
+  app.add_option_function<std::string>(
+         "--tolerance", [arguments](const std::string& text) { arguments->tolerance = parse_tolerance(text); },
+         "With --reference: largest channel difference that still passes, 0 to 1 or as 2/255 [0]")
+      ->type_name("E");
+  app.add_flag("--help-parameters", arguments->help_parameters, "Explain every parameter of --set and .crf, and exit");
+  add_pipeline_options(app, arguments->options, "--site-tolerance");
+  app.footer(
+      "Example:\n"
+      "  atomesh render nacl.crb -o nacl.png --mode volume-surface --view iso --set volume_surface.face_alpha=0.3\n"
+      "  atomesh render nacl.dat -o atoms.png --mode atoms --size 1920x1080\n");
+  return [arguments, &app](Session& session) { return run_render(*arguments, app, session); };
+}
+
+}  // namespace atomesh::cli

@@ -1,0 +1,155 @@
+// The whole way from a file to a material: what is made, what is left out, what is said about it.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.h"
+#include "preprocess/pipeline.h"
+
+namespace atomesh {
+namespace {
+
+constexpr int side = 5;
+constexpr double lattice_constant = 3.0;
+
+// A simple cubic crystal of side³ polonium atoms with its unit cell, one atom missing in the middle.
+class Pipeline : public ::testing::Test {
+ protected:
+  Pipeline()
+      : path_((std::filesystem::temp_directory_path() / ("pipeline-" + std::to_string(getpid()) + ".dat")).string()) {
+    std::ofstream file(path_);
+    file << "primitive\n3 0 0\n0 3 0\n0 0 3\nbasis 1\nPo 0 0 0\n";
+    for (int i = 0; i < side; ++i) {
+      for (int j = 0; j < side; ++j) {
+        for (int k = 0; k < side; ++k) {
+          if (i == side / 2 && j == side / 2 && k == side / 2) continue;
+          file << "Po " << lattice_constant * i << ' ' << lattice_constant * j << ' ' << lattice_constant * k << '\n';
+        }
+      }
+    }
+  }
+  ~Pipeline() override { std::filesystem::remove(path_); }
+
+  Material run(const PipelineOptions& options = {}) { return preprocess(path_, options, report_); }
+  std::vector<std::string> stages(const Material& material) const {
+    std::vector<std::string> names;
+    for (const StageTime& stage : material.provenance.stages) names.push_back(stage.name);
+    return names;
+  }
+
+  std::string path_;
+  PipelineReport report_;
+};
+
+TEST_F(Pipeline, MakesEverythingByDefault) {
+  const Material material = run();
+  EXPECT_EQ(material.atoms.size(), static_cast<std::size_t>(side * side * side - 1));
+  EXPECT_TRUE(validate(material.mesh).empty());
+  EXPECT_TRUE(validate(material.surface, material.mesh).empty());
+  const double edge = lattice_constant * (side - 1);
+  EXPECT_NEAR(report_.volume, edge * edge * edge, 1e-9);
+  EXPECT_NEAR(report_.surface_area, 6.0 * edge * edge, 1e-9);
+  EXPECT_TRUE(report_.surface_closed);
+  EXPECT_EQ(report_.unit_cell_source, "file");
+  ASSERT_EQ(material.defects.vacancies.size(), 1U);
+  EXPECT_LT(glm::distance(material.defects.vacancies[0].position, Vec3(0.5 * edge)), 1e-6);
+  EXPECT_EQ(stages(material), (std::vector<std::string>{"read_atoms", "find_unit_cell", "tetrahedralize", "carve",
+                                                        "extract_surface", "measure", "quantify_defects"}));
+  EXPECT_TRUE(report_.notes.empty());
+}
+
+TEST_F(Pipeline, LeavesOutWhatNobodyWants) {
+  PipelineOptions options;
+  options.wanted = {.atoms = true, .tetrahedra = false, .surface = false, .defects = false};
+  const Material balls = run(options);
+  EXPECT_EQ(stages(balls), (std::vector<std::string>{"read_atoms", "find_unit_cell"}));
+  EXPECT_TRUE(balls.mesh.vertices.empty());
+  options.wanted.surface = true;
+  const Material surface = run(options);
+  EXPECT_FALSE(surface.surface.triangles.empty());
+  EXPECT_FALSE(surface.defects.present());
+}
+
+TEST_F(Pipeline, OptionsReachTheirStages) {
+  PipelineOptions options;
+  options.carve = false;
+  options.unit_cell = "none";
+  const Material material = run(options);
+  EXPECT_EQ(stages(material),
+            (std::vector<std::string>{"read_atoms", "find_unit_cell", "tetrahedralize", "extract_surface", "measure"}));
+  EXPECT_FALSE(material.unit_cell.has_value());
+  EXPECT_FALSE(material.defects.present());
+  ASSERT_EQ(report_.notes.size(), 1U);
+  EXPECT_NE(report_.notes[0].find("--unit-cell"), std::string::npos);
+}
+
+TEST_F(Pipeline, UnitCellOfAnotherFile) {
+  PipelineOptions options;
+  options.unit_cell = path_;
+  EXPECT_EQ(run(options).defects.vacancies.size(), 1U);
+  options.unit_cell = "no-such-file.dat";
+  EXPECT_THROW(run(options), InputError);
+}
+
+TEST_F(Pipeline, ScalarTakesThePlaceOfDefects) {
+  PipelineOptions options;
+  options.scalar = "Po=3";
+  const Material material = run(options);
+  EXPECT_TRUE(material.defects.present());
+  EXPECT_TRUE(material.defects.vacancies.empty());
+  EXPECT_EQ(stages(material).back(), "assign_scalar");
+}
+
+TEST_F(Pipeline, ReducedSamplesAreNotComparedWithTheCrystal) {
+  PipelineOptions options;
+  options.reduce.keep_every = 4;
+  options.reduce.boundary_distance = 1.0;  // one layer
+  const Material material = run(options);
+  EXPECT_LT(material.atoms.size(), static_cast<std::size_t>(side * side * side - 1));
+  EXPECT_FALSE(material.defects.present());
+  ASSERT_EQ(report_.notes.size(), 1U);
+  EXPECT_NE(report_.notes[0].find("--scalar"), std::string::npos);
+}
+
+TEST_F(Pipeline, ProvenanceTellsOptionsAndCounts) {
+  const Provenance provenance = run().provenance;
+  EXPECT_TRUE(provenance.program.starts_with("atomesh "));
+  EXPECT_EQ(provenance.input, std::filesystem::path(path_).filename().string());
+  const auto option = [&](const std::string& name) -> std::string {
+    for (const auto& [key, value] : provenance.options) {
+      if (key == name) return value;
+    }
+    return "absent";
+  };
+  EXPECT_EQ(option("mesher"), "auto");
+  EXPECT_EQ(option("carve"), "auto");
+  EXPECT_EQ(option("format"), "dat");
+  const auto count = [&](const std::string& name) -> std::uint64_t {
+    for (const auto& [key, value] : provenance.counts) {
+      if (key == name) return value;
+    }
+    return 999;
+  };
+  EXPECT_EQ(count("atoms"), static_cast<std::uint64_t>(side * side * side - 1));
+  EXPECT_EQ(count("vacancies"), 1U);
+  EXPECT_EQ(count("duplicates"), 0U);
+}
+
+TEST_F(Pipeline, EveryStageCanCancel) {
+  const std::vector<std::string> names = stages(run());
+  for (const std::string& name : names) {
+    Progress* cancelled = nullptr;
+    Progress progress([&](std::string_view stage, double) {
+      if (stage == name) cancelled->request_cancel();
+    });
+    cancelled = &progress;
+    // A cancel in the last stage may come after its last look; all before must stop at the next stage's beginning.
+    if (name == names.back()) continue;
+    EXPECT_THROW(preprocess(path_, {}, report_, progress), CancelledError) << name;
+  }
+}
+
+}  // namespace
+}  // namespace atomesh
