@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "render/cpu/atom_balls.h"
 #include "render/cpu/ball_hits.h"
+#include "render/cpu/ball_traversal.h"
 #include "render/cpu/reference.h"
 #include "tests/render/fixtures.h"
 
@@ -70,6 +71,8 @@ TEST(BallHits, KeepsWhatCanBeSeenInOrder) {
   EXPECT_EQ(hits.hits().size(), 2U);  // 5.0 is hidden now
   EXPECT_EQ(hits.reach(), 4.0);
   hits.add(4.5, 4, 1.0);
+  EXPECT_EQ(hits.hits().size(), 2U);
+  hits.add(4.0, 5, 1.0);
   EXPECT_EQ(hits.hits().size(), 2U);
   hits.add(4.0, 0, 1.0);  // at the same length the lower index is in front
   EXPECT_EQ(hits.hits().back().ball, 0U);
@@ -167,6 +170,14 @@ TEST(AtomBalls, FarAwayAndVeryDifferentSizesAreTheJudges) {
   // Close to the crystal, far from the centre of the scene.
   camera.eye = material.atoms.positions[40] - 20.0 * camera.forward;
   expect_agreement(scene, camera, parameters, "close");
+}
+
+TEST(AtomBalls, TooManyOverlapsAreLeftToTheHierarchy) {
+  const Parameters parameters = looking(Mode::atoms, "iso");
+  const Scene scene = make_scene(crystal(3, 2.5, 0.1), parameters);
+  const Camera camera = make_camera(parameters, scene.bounds, 64, 64);
+  EXPECT_EQ(project_balls(scene, camera, 20), nullptr);  // 27 balls, each in one tile at least
+  EXPECT_NE(project_balls(scene, camera, 27 * 16), nullptr);
 }
 
 TEST(AtomBalls, PictureIsTheSameForAnyNumberOfThreads) {
