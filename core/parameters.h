@@ -47,8 +47,9 @@ struct CutPlane {
 inline constexpr int max_lights = 8;
 inline constexpr int max_cut_planes = 8;
 
-// B.6.3.1. Colour of atom a = base + positional·multiplier·color + extra·… + vacancy·…, RGBA, each component
-// clamped to [0,1] (seed 5.3.1); A is the opacity coefficient.
+// B.6.3.1. Colour of atom a = base + positional·multiplier·color + extra·… + vacancy·…, RGBA (seed 5.3.1); A is the
+// opacity coefficient, clamped to [0,1]. A sum brighter than 1 is divided by its largest component, which keeps its
+// hue: clamped, the strongest defects would all be white.
 struct VolumeSurfaceParameters {
   double alpha_length = 0.25;  // 1/Å: extinction = alpha_length · A
   double face_alpha = 0.15;    // opacity of a front-facing surface polygon
@@ -56,12 +57,12 @@ struct VolumeSurfaceParameters {
   double diffuse = 0.6;
   double specular = 0.3;
   double shininess = 20.0;
-  Vec4f base_color{0.35F, 0.55F, 0.75F, 0.02F};
-  Vec4f positional_color{1.0F, 0.15F, 0.05F, 1.0F};
+  Vec4f base_color{0.25F, 0.4F, 0.55F, 0.02F};
+  Vec4f positional_color{1.0F, 0.12F, 0.05F, 1.0F};
   double positional_multiplier = 1.0;
-  Vec4f extra_color{0.1F, 0.9F, 0.2F, 1.0F};
+  Vec4f extra_color{0.05F, 0.75F, 0.15F, 1.0F};
   double extra_multiplier = 0.5;
-  Vec4f vacancy_color{0.1F, 0.3F, 1.0F, 1.0F};
+  Vec4f vacancy_color{0.05F, 0.25F, 1.0F, 1.0F};
   double vacancy_multiplier = 0.5;
   bool operator==(const VolumeSurfaceParameters&) const = default;
 };

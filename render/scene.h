@@ -36,8 +36,8 @@ struct Scene {
   Bounds bounds;
   std::vector<Vec3f> vertices;          // about center
   std::vector<Tetrahedron> tetrahedra;  // positively oriented
-  // RGBA of each vertex (seed 5.3.1), clamped to [0,1]. Atoms that share one vertex colour it with the largest of each
-  // of their defect values. A vertex that is no atom, and every vertex of a material without defects, has the base
+  // RGBA of each vertex (VolumeSurfaceParameters), in [0,1]. Atoms that share one vertex colour it with the largest of
+  // each of their defect values. A vertex that is no atom, and every vertex of a material without defects, has the base
   // colour.
   std::vector<Vec4f> colors;
   // Of each vertex: the weighted sum of its defect values divided by the largest in the uncut sample; 0 without

@@ -65,6 +65,13 @@ std::vector<DefectValues> vertex_defects(const Material& material) {
   return values;
 }
 
+// What is brighter than 1 keeps its hue: clamping each component would turn the strongest defects white.
+Vec4f saturate(const Vec4f& sum) {
+  const Vec3f color = glm::max(Vec3f(sum), 0.0F);
+  const float brightest = std::max({color.r, color.g, color.b, 1.0F});
+  return {color / brightest, std::clamp(sum.a, 0.0F, 1.0F)};
+}
+
 }  // namespace
 
 std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfaceParameters& parameters) {
@@ -77,7 +84,7 @@ std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfacePa
     for (std::size_t v = begin; v < end; ++v) {
       const DefectValues& d = defects[v];
       const Vec4f sum = parameters.base_color + d.positional * positional + d.extra * extra + d.vacancy * vacancy;
-      colors[v] = glm::clamp(sum, 0.0F, 1.0F);
+      colors[v] = saturate(sum);
     }
   });
   return colors;

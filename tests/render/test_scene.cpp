@@ -63,7 +63,7 @@ TEST(Scene, PartsNeededFollowTheModeAndTheCuts) {
   EXPECT_THROW(make_scene(material, parameters), Error);
 }
 
-TEST(Scene, ColoursAreTheSeedsFormulaClamped) {
+TEST(Scene, ColoursAreTheSeedsFormulaAndTooBrightOnesKeepTheirHue) {
   Material material = one_tetrahedron();
   material.defects.positional = {0.0F, 0.5F, 0.0F, 9.0F};
   material.defects.extra = {0.0F, 0.0F, 2.0F, 0.0F};
@@ -84,7 +84,7 @@ TEST(Scene, ColoursAreTheSeedsFormulaClamped) {
   expect_color(0, p.base_color);
   expect_color(1, {0.35F, 0.2F, 0.425F, 0.3F});
   expect_color(2, {0.1F, 0.6F, 0.5F, 0.95F});
-  expect_color(3, {1.0F, 0.2F, 1.0F, 1.0F});
+  expect_color(3, {1.0F, 0.2F / 4.6F, 2.55F / 4.6F, 1.0F});
 }
 
 TEST(Scene, ScalarsRunFromZeroToOneOverTheUncutSample) {
