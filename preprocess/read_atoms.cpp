@@ -52,11 +52,12 @@ const Format* format_by_extension(const std::string& path) {
   return nullptr;
 }
 
+// A number in the place of the species is more often another program's index (TetGen's .node) than a name.
 bool is_atom_line(std::string_view line) {
   const std::vector<std::string_view> fields = split_fields(reading::strip_comment(line));
   double ignored = 0.0;
-  return fields.size() == 4 && parse_real(fields[1], ignored) && parse_real(fields[2], ignored) &&
-         parse_real(fields[3], ignored);
+  return fields.size() == 4 && !parse_real(fields[0], ignored) && parse_real(fields[1], ignored) &&
+         parse_real(fields[2], ignored) && parse_real(fields[3], ignored);
 }
 
 // Which format the first lines are written in; nullptr when they could be anything.

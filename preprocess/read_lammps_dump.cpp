@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <optional>
 
 #include "core/error.h"
@@ -117,9 +118,14 @@ class DumpReader {
     return false;
   }
 
-  // Some programs write a line of text behind a frame ("Egb = 0.936"). A number there is an atom too many.
+  // Some programs write a line of text behind a frame ("Egb = 0.936"). One that begins with a number, or has as many
+  // as a position, is an atom too many.
   bool is_remark(std::string_view first, std::string_view line) {
     if (!had_frame_ || first.starts_with("ITEM") || !std::isalpha(static_cast<unsigned char>(first[0]))) return false;
+    const std::vector<std::string_view> fields = split_fields(line);
+    double ignored = 0.0;
+    const auto is_number = [&ignored](std::string_view field) { return parse_real(field, ignored); };
+    if (std::count_if(fields.begin(), fields.end(), is_number) >= 3) return false;
     if (result_.report.skipped++ == 0) {
       note("Text behind a frame is not used, first on line " + std::to_string(lines_.line_number()) + ": " +
            quoted(line) + ".");
@@ -297,7 +303,8 @@ class DumpReader {
       throw InputError(input_.path, header.columns_line,
                        "scaled and unscaled coordinates are mixed in a tilted box; expected one kind");
     }
-    for (Vec3& p : atoms.positions) {
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+      Vec3& p = atoms.positions[i];
       Vec3 fraction = p;
       for (int k = 0; k < 3; ++k) {
         if (!scaled_[static_cast<std::size_t>(k)]) fraction[k] = inverse[k][k] * (p[k] - atoms.box.origin[k]);
@@ -305,6 +312,9 @@ class DumpReader {
       const Vec3 position = atoms.box.origin + matrix * fraction;
       for (int k = 0; k < 3; ++k) {
         if (scaled_[static_cast<std::size_t>(k)]) p[k] = position[k];
+        if (std::isfinite(p[k])) continue;
+        throw InputError(input_.path, header.columns_line + 1 + i,
+                         "the position is beyond every number; expected scaled coordinates near 0 to 1");
       }
     }
   }

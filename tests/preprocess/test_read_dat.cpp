@@ -166,6 +166,9 @@ TEST(ReadAtoms, TheFormatIsToldByContentThenByName) {
   } catch (const UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("did you mean dat?"), std::string::npos) << error.what();
   }
+  // Numbers alone are atoms only where the name says so.
+  EXPECT_EQ(read_text("a.dat", "1 0 0 0\n2 1 0 0\n").atoms.species_name(1), "2");
+  EXPECT_NE(input_error("a.node", "1 0 0 0\n2 1 0 0\n"), "");
   // Nothing to tell it by: the name decides whose error is shown.
   EXPECT_EQ(input_error("a.xyz", "one\n"), "a.xyz:1: expected the number of atoms of a frame, got \"one\"");
   EXPECT_EQ(input_error("a.dat", "one\n"), "a.dat:1: expected \"species x y z\", got 1 field");

@@ -101,6 +101,8 @@ TEST(ReadLammpsDump, SaysWhatWasExpectedAndWhere) {
       {frame_of(cube, "id x y z", "1 0 0 0\n", "2"),
        "a.dump:10: expected 2 atoms as line 4 says, got 1 before the end"},
       {frame_of(cube, "id x y z", "1 0 0 0\n2 0 0 0\n", "1"), "a.dump:11: expected \"ITEM: TIMESTEP\""},
+      {frame_of(cube, "element x y z", "C 0 0 0\nC 1 0 0\n", "1"), "a.dump:11: expected \"ITEM: TIMESTEP\""},
+      {frame_of(cube, "xs ys zs", "0 0 0\n1e308 0 0\n", "2"), "a.dump:11: the position is beyond every number"},
       {frame_of(cube, "id x y z", "1 0 0 0\n", "2") + frame_of(cube, "id x y z", "1 0 0 0\n", "1"),
        "a.dump:11: expected 2 atoms as line 4 says, got 1 before the next ITEM"},
       {frame_of(cube, "id x y z", "1 0 0 0\n2 1 1 1\n1 2 2 2\n", "3"),
