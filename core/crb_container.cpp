@@ -200,34 +200,33 @@ std::string CrbReader::name(const CrbEntry& entry) {
 }
 
 void CrbReader::fail(std::string_view section, const std::string& message) const {
-  throw InputError(file_.path(), 0, "section " + std::string(section) + ": " + message);
+  throw InputError(path_, 0, "section " + std::string(section) + ": " + message);
 }
 
-CrbReader::CrbReader(const std::string& path) : file_(path) {
-  const std::string_view bytes = file_.bytes();
+CrbReader::CrbReader(std::string_view bytes, std::string path) : bytes_(bytes), path_(std::move(path)) {
   CrbHeader header{};
   if (!bytes.starts_with(crb_magic.substr(0, std::min(bytes.size(), crb_magic.size()))) || bytes.empty()) {
-    throw InputError(path, 0, "not a .crb file");
+    throw InputError(path_, 0, "not a .crb file");
   }
   if (bytes.size() < sizeof(header)) {
-    throw InputError(path, 0, "section header: cut off after " + std::to_string(bytes.size()) + " bytes");
+    throw InputError(path_, 0, "section header: cut off after " + std::to_string(bytes.size()) + " bytes");
   }
   std::memcpy(&header, bytes.data(), sizeof(header));
   if (header.version != crb_version) {
-    throw InputError(path, 0,
+    throw InputError(path_, 0,
                      "section header: this is .crb version " + std::to_string(header.version) +
                          ", this program reads version " + std::to_string(crb_version) +
                          "; make the file anew from its atoms, or use the program that wrote it");
   }
-  if (header.sections > 64) throw InputError(path, 0, "section header: damaged (it counts too many sections)");
+  if (header.sections > 64) throw InputError(path_, 0, "section header: damaged (it counts too many sections)");
   const std::uint64_t table_end = sizeof(header) + header.sections * sizeof(CrbEntry);
   if (bytes.size() < table_end) {
-    throw InputError(path, 0, "section header: cut off inside the table of sections");
+    throw InputError(path_, 0, "section header: cut off inside the table of sections");
   }
   table_.resize(header.sections);
   std::memcpy(table_.data(), bytes.data() + sizeof(header), header.sections * sizeof(CrbEntry));
   if (checksum_of(header, std::as_bytes(std::span(table_))) != header.checksum) {
-    throw InputError(path, 0, "section header: damaged (its checksum does not match); copy or make the file again");
+    throw InputError(path_, 0, "section header: damaged (its checksum does not match); copy or make the file again");
   }
   // From here on only a forged table can be inconsistent, but it must not do harm either.
   std::uint64_t offset = table_end;
@@ -258,7 +257,7 @@ CrbReader::CrbReader(const std::string& path) : file_(path) {
     }
   }
   if (offset != header.file_size || offset != bytes.size()) {
-    throw InputError(path, 0,
+    throw InputError(path_, 0,
                      "section header: the file has " + std::to_string(bytes.size()) + " bytes, its sections " +
                          std::to_string(offset));
   }
@@ -288,7 +287,7 @@ void CrbReader::require(std::string_view section, std::uint64_t count, std::size
 void CrbReader::read(std::string_view section, std::span<std::byte> to, Progress& progress) const {
   const CrbEntry& found = entry(section);
   if (found.raw != to.size()) require(section, to.size(), 1);
-  const auto stored = std::as_bytes(std::span(file_.bytes().data(), file_.bytes().size()))
+  const auto stored = std::as_bytes(std::span(bytes_.data(), bytes_.size()))
                           .subspan(static_cast<std::size_t>(found.offset), static_cast<std::size_t>(found.stored));
   progress.check();
   if (checksum_of(stored) != found.checksum) {

@@ -47,7 +47,8 @@ class CrbWriter {
 // Opens a .crb: header and table are checked, sections when they are read. Everything wrong is an InputError.
 class CrbReader {
  public:
-  explicit CrbReader(const std::string& path);
+  // `bytes` is the whole file and must live as long as the reader; `path` is its name in messages.
+  CrbReader(std::string_view bytes, std::string path);
 
   const std::vector<CrbEntry>& table() const { return table_; }
   static std::string name(const CrbEntry& entry);
@@ -73,7 +74,8 @@ class CrbReader {
   void require(std::string_view section, std::uint64_t count, std::size_t size) const;
   const CrbEntry& entry(std::string_view section) const;
 
-  MappedFile file_;
+  std::string_view bytes_;
+  std::string path_;
   std::vector<CrbEntry> table_;
 };
 

@@ -184,8 +184,8 @@ class Sections {
 
 class MaterialReader {
  public:
-  MaterialReader(const std::string& path, const MaterialParts& parts, Progress& progress)
-      : file_(path), parts_(parts), progress_(progress) {}
+  MaterialReader(const CrbReader& file, const MaterialParts& parts, Progress& progress)
+      : file_(file), parts_(parts), progress_(progress) {}
 
   Material read() {
     read_counts();
@@ -229,6 +229,39 @@ class MaterialReader {
     const bool vertices_fit = !has(crb_vertices_are_positions) || counts_.vertices == counts_.atoms;
     const bool atoms_fit = !has(crb_vertex_atoms_are_identity) || counts_.vertices <= counts_.atoms;
     if (!vertices_fit || !atoms_fit) file_.fail("counts", "the numbers of atoms and vertices contradict the flags");
+    check_table();
+  }
+
+  // The file has the sections its counts call for, and no others.
+  void check_table() const {
+    const std::array<std::pair<const char*, bool>, 19> sections{{
+        {"counts", true},
+        {"species", true},
+        {"box", true},
+        {"unit cell", has(crb_has_unit_cell)},
+        {"positions", counts_.atoms > 0},
+        {"atom species", counts_.atoms > 0},
+        {"ids", has(crb_has_ids)},
+        {"scalar names", counts_.columns > 0},
+        {"scalars", counts_.columns > 0},
+        {"vertices", counts_.vertices > 0 && !has(crb_vertices_are_positions)},
+        {"vertex atoms", counts_.vertices > 0 && !has(crb_vertex_atoms_are_identity)},
+        {"tetrahedra", counts_.tetrahedra > 0},
+        {"surface", counts_.triangles > 0},
+        {"surface cells", has(crb_has_surface_cells)},
+        {"surface faces", has(crb_has_surface_cells)},
+        {"defects", has(crb_has_defects)},
+        {"vacancies", counts_.vacancies > 0},
+        {"extras", counts_.extras > 0},
+        {"provenance", true},
+    }};
+    auto next = file_.table().begin();
+    for (const auto& [name, present] : sections) {
+      if (!present) continue;
+      if (next == file_.table().end() || CrbReader::name(*next) != name) file_.fail(name, "is missing");
+      ++next;
+    }
+    if (next != file_.table().end()) file_.fail(CrbReader::name(*next), "is not called for by the counts");
   }
 
   void read_small() {
@@ -365,7 +398,7 @@ class MaterialReader {
     }
   }
 
-  const CrbReader file_;
+  const CrbReader& file_;
   const MaterialParts parts_;
   Progress& progress_;
   CrbCounts counts_{};
@@ -374,8 +407,9 @@ class MaterialReader {
 
 }  // namespace
 
-Material read_crb(const std::string& path, const MaterialParts& parts, Progress& progress) {
-  return MaterialReader(path, parts, progress).read();
+Material read_crb(std::string_view bytes, const std::string& path, const MaterialParts& parts, Progress& progress) {
+  const CrbReader file(bytes, path);
+  return MaterialReader(file, parts, progress).read();
 }
 
 void write_crb(const std::string& path, const Material& material, bool compress, Progress& progress) {
@@ -390,8 +424,8 @@ void write_crb(const std::string& path, const Material& material, bool compress,
   }
 }
 
-std::vector<SectionInfo> list_crb_sections(const std::string& path) {
-  const CrbReader file(path);
+std::vector<SectionInfo> list_crb_sections(std::string_view bytes, const std::string& path) {
+  const CrbReader file(bytes, path);
   std::vector<SectionInfo> sections;
   for (const CrbEntry& entry : file.table()) sections.push_back({CrbReader::name(entry), entry.raw, entry.stored});
   return sections;

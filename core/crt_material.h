@@ -32,7 +32,8 @@ namespace atomesh {
 inline constexpr std::string_view crt_magic{"atomesh-crt"};
 inline constexpr int crt_version = 1;
 
-Material read_crt(const std::string& path, const MaterialParts& parts, Progress& progress);
+// `bytes` is the whole file, `path` its name in messages.
+Material read_crt(std::string_view bytes, const std::string& path, const MaterialParts& parts, Progress& progress);
 // The material must have no problem (find_problem).
 void write_crt(const std::string& path, const Material& material, Progress& progress);
 

@@ -15,7 +15,8 @@ namespace {
 
 class CrtReader {
  public:
-  CrtReader(const std::string& path, Progress& progress) : file_(path), lines_(file_.bytes()), progress_(progress) {}
+  CrtReader(std::string_view bytes, const std::string& path, Progress& progress)
+      : bytes_(bytes), path_(path), lines_(bytes), progress_(progress) {}
 
   Material read() {
     read_heading();
@@ -37,9 +38,7 @@ class CrtReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const {
-    throw InputError(file_.path(), lines_.line_number(), message);
-  }
+  [[noreturn]] void fail(const std::string& message) const { throw InputError(path_, lines_.line_number(), message); }
 
   // ---- lines and fields
 
@@ -48,7 +47,7 @@ class CrtReader {
     std::string_view line;
     while (lines_.next(line)) {
       if ((lines_.line_number() & 0xFFFFU) == 0) {
-        progress_.update(static_cast<double>(lines_.offset()) / static_cast<double>(file_.bytes().size() + 1));
+        progress_.update(static_cast<double>(lines_.offset()) / static_cast<double>(bytes_.size() + 1));
       }
       rest_ = line;
       const std::size_t first = line.find_first_not_of(" \t");
@@ -119,7 +118,7 @@ class CrtReader {
   // How many lines a section has; no more than the rest of the file can hold at that many bytes a line.
   std::size_t count_of_lines(std::size_t smallest_line) {
     const std::int64_t value = integer("a number of lines");
-    const std::size_t left = file_.bytes().size() - lines_.offset();
+    const std::size_t left = bytes_.size() - lines_.offset();
     if (value < 0 || static_cast<std::uint64_t>(value) > (left + 1) / smallest_line) {
       fail(std::to_string(value) + " lines cannot follow: the file is too short (or the number wrong)");
     }
@@ -169,7 +168,7 @@ class CrtReader {
   // ---- sections; each starts with its first line at hand and leaves with the next section's
 
   void read_heading() {
-    if (!advance()) throw InputError(file_.path(), 0, "not a .crt file (it is empty)");
+    if (!advance()) throw InputError(path_, 0, "not a .crt file (it is empty)");
     if (next_field(rest_) != crt_magic) fail("not a .crt file (expected \"atomesh-crt\")");
     const std::int64_t version = integer("the format's version");
     if (version != crt_version) {
@@ -221,13 +220,16 @@ class CrtReader {
     if (count > 65535) fail("more than 65,535 species");
     end_of_line();
     std::vector<Species>& table = m_.atoms.species_table;
+    table.reserve(count);  // species_ looks into its names
     for (std::size_t i = 0; i < count; ++i) {
       next_line("a species");
       std::string name = string();
       table.push_back({std::move(name), real("a radius")});
       end_of_line();
+      if (!species_.emplace(table.back().name, static_cast<std::uint16_t>(i)).second) {
+        fail(table.back().name + " stands twice in the list of species");
+      }
     }
-    for (std::size_t i = 0; i < count; ++i) species_.emplace(table[i].name, static_cast<std::uint16_t>(i));
     next_line("box");
   }
 
@@ -281,8 +283,7 @@ class CrtReader {
     const std::size_t count = count_of_lines(8);
     const bool ids = flag("ids");
     // Every line has a value for each column, at least two bytes.
-    if (count > (file_.bytes().size() + 1) / (8 + 2 * atoms.columns.size()))
-      fail("the file is too short for its columns");
+    if (count > (bytes_.size() + 1) / (8 + 2 * atoms.columns.size())) fail("the file is too short for its columns");
     atoms.positions.resize(count);
     atoms.species.resize(count);
     if (ids) atoms.ids.resize(count);
@@ -391,11 +392,12 @@ class CrtReader {
   // What needs more than one line to see.
   void check() const {
     if (const auto problem = find_problem(m_, counts_of(m_))) {
-      throw InputError(file_.path(), 0, "section " + problem->section + ": " + problem->what);
+      throw InputError(path_, 0, "section " + problem->section + ": " + problem->what);
     }
   }
 
-  const MappedFile file_;
+  const std::string_view bytes_;
+  const std::string& path_;
   LineReader lines_;
   Progress& progress_;
   std::string_view rest_;
@@ -405,8 +407,8 @@ class CrtReader {
 
 }  // namespace
 
-Material read_crt(const std::string& path, const MaterialParts& parts, Progress& progress) {
-  Material material = CrtReader(path, progress).read();
+Material read_crt(std::string_view bytes, const std::string& path, const MaterialParts& parts, Progress& progress) {
+  Material material = CrtReader(bytes, path, progress).read();
   if (!parts.atoms) {
     std::vector<Species> species = std::move(material.atoms.species_table);
     material.atoms = {};

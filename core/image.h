@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,8 @@ void write_png(const std::string& path, const Image& image,
                const std::vector<std::pair<std::string, std::string>>& text = {});
 // Any PNG of 8 or 16 bits, gray, palette or colour. Throws InputError for anything else, truncated or damaged files.
 Image read_png(const std::string& path);
+// The same from bytes in memory; `name` stands for the file in messages.
+Image parse_png(std::string_view bytes, const std::string& name);
 // The texts of a PNG, in file order. Throws InputError as read_png does.
 std::vector<std::pair<std::string, std::string>> read_png_text(const std::string& path);
 

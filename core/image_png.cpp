@@ -90,9 +90,8 @@ bool read_pixels(PngReader& reader, png_bytepp rows) {
 }
 
 // Reads a whole picture as 16-bit RGBA, big-endian; throws InputError.
-std::vector<png_byte> read_all(PngReader& reader, const std::string& path, int& width, int& height) {
-  const MappedFile file(path);
-  const std::string_view bytes = file.bytes();
+std::vector<png_byte> read_all(PngReader& reader, std::string_view bytes, const std::string& path, int& width,
+                               int& height) {
   if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0) {
     throw InputError(path, 0, "not a PNG file");
   }
@@ -214,10 +213,15 @@ void write_png(const std::string& path, const Image& image,
 }
 
 Image read_png(const std::string& path) {
+  const MappedFile file(path);
+  return parse_png(file.bytes(), path);
+}
+
+Image parse_png(std::string_view bytes, const std::string& name) {
   PngReader reader;
   int width = 0;
   int height = 0;
-  const std::vector<png_byte> data = read_all(reader, path, width, height);
+  const std::vector<png_byte> data = read_all(reader, bytes, name, width, height);
   Image image(width, height);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     for (std::size_t c = 0; c < 4; ++c) {
@@ -229,10 +233,11 @@ Image read_png(const std::string& path) {
 }
 
 std::vector<std::pair<std::string, std::string>> read_png_text(const std::string& path) {
+  const MappedFile file(path);
   PngReader reader;
   int width = 0;
   int height = 0;
-  read_all(reader, path, width, height);
+  read_all(reader, file.bytes(), path, width, height);
   png_textp chunks = nullptr;
   int count = 0;
   png_get_text(reader.png, reader.info, &chunks, &count);

@@ -16,9 +16,7 @@ namespace {
 enum class Kind { crb, crt, other };
 
 // By the first bytes; a file cut off within them still counts as what it began to be.
-Kind kind_of(const std::string& path) {
-  const MappedFile file(path);
-  const std::string_view bytes = file.bytes();
+Kind kind_of(std::string_view bytes) {
   if (!bytes.empty() && bytes.starts_with(crb_magic.substr(0, bytes.size()))) return Kind::crb;
   std::string_view text = bytes.substr(0, 4096);
   LineReader lines(text);
@@ -34,16 +32,22 @@ Kind kind_of(const std::string& path) {
 }  // namespace
 
 Material read_material(const std::string& path, const MaterialParts& parts, Progress& progress) {
+  const MappedFile file(path);
+  return parse_material(file.bytes(), path, parts, progress);
+}
+
+Material parse_material(std::string_view bytes, const std::string& name, const MaterialParts& parts,
+                        Progress& progress) {
   progress.stage("read");
-  switch (kind_of(path)) {
+  switch (kind_of(bytes)) {
     case Kind::crb:
-      return read_crb(path, parts, progress);
+      return read_crb(bytes, name, parts, progress);
     case Kind::crt:
-      return read_crt(path, parts, progress);
+      return read_crt(bytes, name, parts, progress);
     case Kind::other:
       break;
   }
-  throw InputError(path, 0, "neither a .crb nor a .crt file (its first bytes say so)");
+  throw InputError(name, 0, "neither a .crb nor a .crt file (its first bytes say so)");
 }
 
 void write_material(const std::string& path, const Material& material, const WriteOptions& options,
@@ -65,11 +69,11 @@ void write_material(const std::string& path, const Material& material, const Wri
 }
 
 bool is_material_file(const std::string& path) {
-  return kind_of(path) != Kind::other;
+  return kind_of(MappedFile(path).bytes()) != Kind::other;
 }
 
 std::vector<SectionInfo> list_sections(const std::string& path) {
-  return list_crb_sections(path);
+  return list_crb_sections(MappedFile(path).bytes(), path);
 }
 
 }  // namespace atomesh

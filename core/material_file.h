@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/material.h"
@@ -23,6 +24,10 @@ struct MaterialParts {
 // use. Throws InputError "FILE: section NAME: …" (.crb) or "FILE:LINE: …" (.crt) for anything truncated, damaged, of
 // another version or inconsistent.
 Material read_material(const std::string& path, const MaterialParts& parts = {}, Progress& progress = no_progress());
+
+// The same from bytes in memory; `name` stands for the file in messages.
+Material parse_material(std::string_view bytes, const std::string& name, const MaterialParts& parts = {},
+                        Progress& progress = no_progress());
 
 struct WriteOptions {
   bool compress = true;  // zstd in .crb

@@ -1,5 +1,15 @@
 #include "core/parameter_file.h"
 
+// toml++ 3.3 asserts what some broken files violate ("a = ,"): abort() in a debug build, anything at all in a release.
+// Here that is an exception in every build; parse() makes it an InputError.
+namespace atomesh::toml_assertion {
+struct Failed {};
+[[noreturn]] inline void fail() {
+  throw Failed();
+}
+}  // namespace atomesh::toml_assertion
+#undef NDEBUG
+#define TOML_ASSERT(condition) (static_cast<bool>(condition) ? static_cast<void>(0) : atomesh::toml_assertion::fail())
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -126,11 +136,33 @@ const char* toml_form(const ParameterRow& row) {
   return "a preset's name in quotes, or rows [scalar, r, g, b, a]";
 }
 
+// True when parsing the first `bytes` of a text runs into one of toml++'s assertions.
+bool fails_assertion(std::string_view text, std::size_t bytes) {
+  try {
+    static_cast<void>(toml::parse(text.substr(0, bytes)));
+  } catch (const toml::parse_error&) {
+    return false;  // because of the cut, or later
+  } catch (const toml_assertion::Failed&) {
+    return true;
+  }
+  return false;
+}
+
 toml::table parse(const std::string& path, std::string_view text) {
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     throw InputError(path, error.source().begin.line, std::string(error.description()));
+  } catch (const toml_assertion::Failed&) {
+    // It does not say where. The parser goes from front to back, so halving finds the first line that makes it fail.
+    std::vector<std::size_t> line_ends;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') line_ends.push_back(i + 1);
+    }
+    line_ends.push_back(text.size());
+    const auto line = std::partition_point(line_ends.begin(), line_ends.end(),
+                                           [&](std::size_t end) { return !fails_assertion(text, end); });
+    throw InputError(path, static_cast<std::uint64_t>(line - line_ends.begin()) + 1, "expected a value");
   }
 }
 
@@ -292,7 +324,11 @@ std::string text_to_write(const std::string& path, const Parameters& parameters)
 
 Parameters read_crf(const std::string& path, const Parameters& base) {
   const MappedFile file(path);
-  return read(path, parse(path, file.bytes()), base);
+  return parse_crf(file.bytes(), path, base);
+}
+
+Parameters parse_crf(std::string_view text, const std::string& name, const Parameters& base) {
+  return read(name, parse(name, text), base);
 }
 
 void write_crf(const std::string& path, const Parameters& parameters) {

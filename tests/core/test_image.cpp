@@ -143,8 +143,7 @@ TEST(Png, EveryTruncationIsAnInputError) {
   write_png(folder.file("a.png"), random_image(9, 9, false), {{"key", "value"}});
   const std::string bytes = read_bytes(folder.file("a.png"));
   for (std::size_t length = 0; length < bytes.size(); ++length) {
-    write_bytes(folder.file("b.png"), std::string_view(bytes).substr(0, length));
-    EXPECT_THROW(read_png(folder.file("b.png")), InputError) << length;
+    EXPECT_THROW(parse_png(bytes.substr(0, length), "b.png"), InputError) << length;
   }
 }
 
@@ -158,9 +157,8 @@ TEST(Png, EveryFlippedBitIsReadTheSameOrAnInputError) {
   for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
     std::string damaged = bytes;
     damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
-    write_bytes(folder.file("b.png"), damaged);
     try {
-      const Image back = read_png(folder.file("b.png"));
+      const Image back = parse_png(damaged, "b.png");
       EXPECT_EQ(back.pixels, image.pixels) << "bit " << bit;
     } catch (const InputError&) {
       ++refused;

@@ -200,6 +200,11 @@ TEST(Crf, MistakesAreNamedWithFileAndLine) {
   EXPECT_NE(message("view.zoom = 1979-05-27\n"), "");
   EXPECT_NE(message("background = [0, 0, 0, 2]\n"), "");
   EXPECT_NE(message("view.zoom = \n"), "");
+  EXPECT_NE(message("# one\nmode = \"xray\"\nview.zoom = ,\nview.roll = 1\n").find("expected value"),
+            std::string::npos);
+  EXPECT_EQ(message("# one\nmode = \"xray\"\nview.pan = [1, }]\nview.roll = 1\n"), "3: expected a value");
+  EXPECT_EQ(message("view.zoom = ]").substr(0, 2), "1:");
+  EXPECT_EQ(message("view.pan = [1,,2]").substr(0, 2), "1:");
   // Of two mistakes the first in the file is reported, whatever the order of the keys.
   EXPECT_EQ(message("view.zoom = 0\nlight.1.enabled = 3\n").substr(0, 2), "1:");
   EXPECT_THROW(read_crf(folder.file("none.crf")), InputError);
