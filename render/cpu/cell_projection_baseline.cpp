@@ -6,11 +6,12 @@
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/shared/segment.h"
 
-// After those.
+// After those, each needs the one before it.
+// clang-format off
 #include "render/cpu/cell_projection_setup.inl"
-
-// Last.
+#include "render/cpu/cell_projection_integrate.inl"
 #include "render/cpu/cell_projection_block.inl"
+// clang-format on
 
 namespace atomesh::cell_projection {
 

@@ -60,9 +60,8 @@ template <class Draw>
 void for_tiles(const Scene& scene, const Camera& camera, RenderStats& stats, Progress& progress, Draw&& draw) {
   const auto start = std::chrono::steady_clock::now();
   const ProjectedVertices vertices = project_vertices(scene.vertices, scene.center, camera);
-  const TileBins bins = bin_to_tiles(scene.surface.size(), camera.width, camera.height, tile_side, [&](std::size_t t) {
-    return pixel_box(vertices, scene.surface[t], camera.width, camera.height);
-  });
+  const auto box = [&](std::size_t t) { return pixel_box(vertices, scene.surface[t], camera.width, camera.height); };
+  const TileBins bins = bin_to_tiles(scene.surface.size(), camera.width, camera.height, tile_side, box, progress);
   stats.setup_ms += ms_since(start);
   const auto drawn = std::chrono::steady_clock::now();
   std::atomic<std::uint64_t> steps{0};

@@ -1,17 +1,10 @@
 #include "render/cpu/tile_bins.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "core/camera.h"
 #include "core/parallel.h"
 
 namespace atomesh {
 
 namespace {
-
-// Beyond the rounding of a float at column 16,384, and the shift of cell projection's rays.
-constexpr float pixel_margin = 0.005F;
 
 struct TileRange {
   int first_column;
@@ -27,7 +20,7 @@ TileRange tile_range(const PixelBox& box, int side) {
 }  // namespace
 
 TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
-                      const std::function<PixelBox(std::size_t)>& box) {
+                      const std::function<PixelBox(std::size_t)>& box, const Progress& progress) {
   TileBins bins;
   bins.side = side;
   bins.columns = (width + side - 1) / side;
@@ -37,6 +30,7 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
   // whatever the number of threads.
   const std::size_t chunks = std::clamp<std::size_t>(count / 4096, 1, 64);
   const auto for_chunk = [&](std::size_t chunk, auto&& visit) {
+    progress.check();
     const std::size_t end = count * (chunk + 1) / chunks;
     for (std::size_t i = count * chunk / chunks; i < end; ++i) {
       const PixelBox pixels = box(i);
@@ -73,7 +67,7 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
   return bins;
 }
 
-ProjectedVertices project_vertices(std::span<const glm::vec3> vertices, const Vec3& center, const Camera& camera) {
+ProjectedVertices project_vertices(std::span<const Vec3f> vertices, const Vec3& center, const Camera& camera) {
   ProjectedVertices projected;
   projected.camera.resize(3 * vertices.size());
   projected.pixel.resize(2 * vertices.size());
@@ -102,26 +96,6 @@ ProjectedVertices project_vertices(std::span<const glm::vec3> vertices, const Ve
     }
   });
   return projected;
-}
-
-PixelBox pixel_box(const ProjectedVertices& vertices, std::span<const Index> corners, int width, int height) {
-  float low[2] = {3e38F, 3e38F};
-  float high[2] = {-3e38F, -3e38F};
-  std::size_t behind = 0;
-  for (const Index corner : corners) {
-    behind += vertices.behind[corner];
-    for (int axis = 0; axis < 2; ++axis) {
-      const float at = vertices.pixel[2 * static_cast<std::size_t>(corner) + static_cast<std::size_t>(axis)];
-      low[axis] = std::min(low[axis], at);
-      high[axis] = std::max(high[axis], at);
-    }
-  }
-  if (behind == corners.size()) return {};
-  if (behind > 0) return {0, width - 1, 0, height - 1};
-  return {std::max(0, static_cast<int>(std::ceil(low[0] - pixel_margin))),
-          std::min(width - 1, static_cast<int>(std::floor(high[0] + pixel_margin))),
-          std::max(0, static_cast<int>(std::ceil(low[1] - pixel_margin))),
-          std::min(height - 1, static_cast<int>(std::floor(high[1] + pixel_margin)))};
 }
 
 }  // namespace atomesh

@@ -1,11 +1,15 @@
 // Which primitives lie under which tile of the picture.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -32,9 +36,9 @@ struct TileBins {
   }
 };
 
-// `box(i)` is the box of primitive i, clipped to the picture; it is asked twice, in parallel.
+// `box(i)` is the box of primitive i, clipped to the picture; it is asked twice, in parallel. Throws CancelledError.
 TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
-                      const std::function<PixelBox(std::size_t)>& box);
+                      const std::function<PixelBox(std::size_t)>& box, const Progress& progress);
 
 // Vertices as the renderers project them.
 struct ProjectedVertices {
@@ -44,11 +48,39 @@ struct ProjectedVertices {
   std::vector<std::uint8_t> behind;
 };
 
-struct Camera;
-ProjectedVertices project_vertices(std::span<const glm::vec3> vertices, const Vec3& center, const Camera& camera);
+ProjectedVertices project_vertices(std::span<const Vec3f> vertices, const Vec3& center, const Camera& camera);
+
+// Beyond the rounding of a float at column 16,384, and the shift of cell projection's rays.
+inline constexpr float pixel_margin = 0.005F;
 
 // The pixels whose centres a primitive with these corners may cover, clipped to the picture: all of them when some of
 // its corners are behind the eye, none when all are.
-PixelBox pixel_box(const ProjectedVertices& vertices, std::span<const Index> corners, int width, int height);
+template <std::size_t N>
+PixelBox pixel_box(const ProjectedVertices& vertices, const std::array<Index, N>& corners, int width, int height) {
+  float low[2] = {3e38F, 3e38F};
+  float high[2] = {-3e38F, -3e38F};
+  std::size_t behind = 0;
+  for (const Index corner : corners) {
+    behind += vertices.behind[corner];
+    const float* at = &vertices.pixel[2 * static_cast<std::size_t>(corner)];
+    for (int axis = 0; axis < 2; ++axis) {
+      low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
+      high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];
+    }
+  }
+  if (behind == N) return {};
+  if (behind > 0) return {0, width - 1, 0, height - 1};
+  // Clamped while they are floats: no rounding down of negative numbers is needed.
+  const auto first = [](float x) {
+    const float from = std::max(0.0F, x - pixel_margin);
+    const int whole = static_cast<int>(from);
+    return whole + (static_cast<float>(whole) < from ? 1 : 0);
+  };
+  const auto last = [](float x, int size) {
+    const float to = x + pixel_margin;
+    return to < 0.0F ? -1 : static_cast<int>(std::min(to, static_cast<float>(size - 1)));
+  };
+  return {first(low[0]), last(high[0], width), first(low[1]), last(high[1], height)};
+}
 
 }  // namespace atomesh

@@ -1,0 +1,107 @@
+#include "render/cpu/cell_projection_tile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace atomesh::cell_projection {
+
+void Tile::resize(std::size_t count) {
+  count_ = count;
+  if (planes.size() >= count) return;
+  planes.resize(count);
+  values.resize(count);
+  keys.resize(count);
+  ranges.resize(count);
+}
+
+// Keys are resolved to 2^-33 of their range: a radix sort of three digits.
+void Tile::sort() {
+  constexpr int digit = 11;
+  constexpr std::uint64_t digit_mask = (1U << digit) - 1;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (std::size_t n = 0; n < count_; ++n) {
+    if (std::isinf(keys[n])) continue;
+    low = std::min(low, keys[n]);
+    high = std::max(high, keys[n]);
+  }
+  const double scale = high > low ? (std::ldexp(1.0, 3 * digit) - 1.0) / (high - low) : 0.0;
+  std::array<std::array<std::uint32_t, 1 << digit>, 3> places{};
+  sorted_.clear();
+  for (std::size_t n = 0; n < count_; ++n) {
+    if (std::isinf(keys[n])) continue;
+    const auto key = static_cast<std::uint64_t>((keys[n] - low) * scale);
+    sorted_.push_back({key, static_cast<std::uint32_t>(n)});
+    for (std::size_t pass = 0; pass < 3; ++pass) ++places[pass][key >> (digit * pass) & digit_mask];
+  }
+  sorting_.resize(sorted_.size());
+  for (std::size_t pass = 0; pass < 3; ++pass) {
+    std::uint32_t place = 0;
+    for (std::uint32_t& at : places[pass]) place += std::exchange(at, place);
+    for (const Entry& entry : sorted_) {
+      sorting_[places[pass][entry.key >> (digit * pass) & digit_mask]++] = entry;
+    }
+    sorted_.swap(sorting_);
+  }
+}
+
+void Tile::list_blocks() {
+  sort();
+  constexpr std::size_t blocks = std::size_t{blocks_per_side} * blocks_per_side;
+  std::array<std::uint32_t, blocks> fill{};
+  const auto for_blocks = [this](std::uint32_t cell, auto&& visit) {
+    const BlockRange range = ranges[cell];
+    for (unsigned row = range.first_row; row <= range.last_row; ++row) {
+      for (unsigned column = range.first_column; column <= range.last_column; ++column) {
+        visit(row * blocks_per_side + column);
+      }
+    }
+  };
+  for (const Entry& entry : sorted_) {
+    for_blocks(entry.cell, [&fill](std::size_t block) { ++fill[block]; });
+  }
+  begin_.assign(blocks + 1, 0);
+  for (std::size_t b = 0; b < blocks; ++b) begin_[b + 1] = begin_[b] + fill[b];
+  cells_.resize(begin_[blocks]);
+  std::copy_n(begin_.begin(), blocks, fill.begin());
+  for (const Entry& entry : sorted_) {
+    for_blocks(entry.cell, [&](std::size_t block) { cells_[fill[block]++] = entry.cell; });
+  }
+}
+
+BlockScratch Tile::scratch() {
+  std::size_t longest = 1;
+  for (std::size_t b = 0; b + 1 < begin_.size(); ++b)
+    longest = std::max<std::size_t>(longest, begin_[b + 1] - begin_[b]);
+  if (lanes_.size() < longest) {
+    floats_.resize(longest * (block_pixels * (1 + 1 + 4)));
+    numbers_.resize(longest * 3);
+    lanes_.resize(longest);
+  }
+  float* floats = floats_.data();
+  std::uint32_t* numbers = numbers_.data();
+  return {floats,
+          floats + longest * block_pixels,
+          lanes_.data(),
+          numbers,
+          numbers + longest,
+          numbers + 2 * longest,
+          floats + 2 * longest * block_pixels};
+}
+
+std::unique_ptr<Tile> TilePool::take() {
+  const std::lock_guard lock(mutex_);
+  if (free_.empty()) return std::make_unique<Tile>();
+  std::unique_ptr<Tile> tile = std::move(free_.back());
+  free_.pop_back();
+  return tile;
+}
+
+void TilePool::give_back(std::unique_ptr<Tile> tile) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(std::move(tile));
+}
+
+}  // namespace atomesh::cell_projection

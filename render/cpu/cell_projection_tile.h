@@ -1,0 +1,69 @@
+// The cells of one tile: their records, in order, and listed under the tile's blocks.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "render/cpu/cell_projection_kernel.h"
+#include "render/cpu/tile_bins.h"
+
+namespace atomesh::cell_projection {
+
+// Blocks of a tile a cell may touch, ends included.
+struct BlockRange {
+  std::uint8_t first_column, last_column, first_row, last_row;
+};
+
+// What a thread needs to draw a tile; grows to the largest tile it has seen.
+class Tile {
+ public:
+  // Records for `count` cells, to be filled by Kernel::setup().
+  void resize(std::size_t count);
+
+  std::vector<CellPlanes> planes;
+  std::vector<CellValues> values;
+  std::vector<double> keys;
+  std::vector<BlockRange> ranges;
+
+  // Puts the cells in ascending order of their keys, equal keys by their place in the tile; infinite keys are left out.
+  // Then lists them, in this order, under the blocks of their ranges.
+  void list_blocks();
+  std::span<const std::uint32_t> cells_of(int block) const {
+    const auto b = static_cast<std::size_t>(block);
+    return {cells_.data() + begin_[b], cells_.data() + begin_[b + 1]};
+  }
+  // Room for the longest of the blocks' lists.
+  BlockScratch scratch();
+
+ private:
+  struct Entry {
+    std::uint64_t key;
+    std::uint32_t cell;
+  };
+  void sort();
+
+  std::size_t count_ = 0;
+  std::vector<Entry> sorted_;
+  std::vector<Entry> sorting_;
+  std::vector<std::uint32_t> begin_;  // of each block in cells_
+  std::vector<std::uint32_t> cells_;
+  std::vector<float> floats_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<std::uint16_t> lanes_;
+};
+
+// Lends tiles to the threads that draw.
+class TilePool {
+ public:
+  std::unique_ptr<Tile> take();
+  void give_back(std::unique_ptr<Tile> tile);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Tile>> free_;
+};
+
+}  // namespace atomesh::cell_projection
