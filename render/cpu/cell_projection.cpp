@@ -86,6 +86,7 @@ class Drawing {
       if (omp_get_thread_num() == 0)
         progress.update(static_cast<double>(finished) / static_cast<double>(bins_.tiles()));
     });
+    progress.update(1.0);
     steps += all_steps;
     return image;
   }

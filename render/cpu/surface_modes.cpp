@@ -76,6 +76,7 @@ void for_tiles(const Scene& scene, const Camera& camera, RenderStats& stats, Pro
     // The listener belongs to the thread that called us.
     if (omp_get_thread_num() == 0) progress.update(static_cast<double>(finished) / static_cast<double>(bins.tiles()));
   });
+  progress.update(1.0);
   stats.steps += steps;
   stats.render_ms += ms_since(drawn);
 }

@@ -29,6 +29,9 @@ std::function<Vec3(const Vec3&)> shaking(double amplitude, std::uint64_t seed);
 // Parameters of a mode and view with the sample's centre in the middle of the picture.
 Parameters looking(Mode mode, std::string_view view, Projection projection = Projection::parallel);
 
+// The same view with every ray moved right and up by fractions of a pixel.
+Camera nudged(const Camera& camera, double columns, double rows);
+
 struct Drawn {
   Image image;  // premultiplied, without background
   RenderStats stats;

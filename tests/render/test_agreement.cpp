@@ -67,21 +67,6 @@ std::vector<std::string> judged_renderers() {
   return names;
 }
 
-// The same view with every ray moved right and up by fractions of a pixel.
-Camera nudged(const Camera& camera, double columns, double rows) {
-  Camera moved = camera;
-  const double x = columns * camera.pixel;
-  const double y = rows * camera.pixel;
-  if (camera.projection == Projection::parallel) {
-    moved.eye += x * camera.right + y * camera.up;
-  } else {  // a turn by angles so small that they add up
-    moved.forward = glm::normalize(camera.forward + x * camera.right + y * camera.up);
-    moved.right = glm::normalize(camera.right - x * camera.forward);
-    moved.up = glm::cross(moved.right, moved.forward);
-  }
-  return moved;
-}
-
 // What the judge sees through a pixel and around its centre, up to 1/4096 of a pixel away: lowest and highest of each
 // channel. Where these differ the picture is not continuous (the ray grazes the hull or runs in a face of it) and any
 // value between is right.
