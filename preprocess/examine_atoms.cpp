@@ -67,21 +67,35 @@ void Examiner::pair_displaced(const Match& match) {
   }
 }
 
+// Most atoms are in place and so is everybody around them; a look hardly beyond what counts tells. Nobody further away
+// can hold an entry better: no displacement exceeds what the glance reaches further.
+bool Examiner::settled(const Match& match) const {
+  const double margin = features_.glance_radius - features_.farthest_counted();
+  if (match.matched != neighbours_.size() || match.squares > margin * margin) return false;
+  const SiteKind& kind = features_.kinds[match.kind];
+  const auto end = match.neighbour.begin() + static_cast<std::ptrdiff_t>(std::max(kind.near, kind.counted));
+  return std::find(match.neighbour.begin(), end, -1) == end;
+}
+
 void Examiner::examine(Index slot, Defects& defects, std::vector<std::uint8_t>& reliable, RangeResult& result) {
   const Index atom = grid_.point(slot);
   const std::uint16_t species = atoms_.species[atom];
   const auto lose = [&] {
     defects.extra[atom] = 1.0F;
-    if (!features_.kinds_of[species].empty())
-      result.census.strays += features_.kinds[features_.kinds_of[species][0]].near;
+    if (features_.kinds_of[species].empty()) return;
+    result.census.strays += features_.kinds[features_.kinds_of[species][0]].near;
   };
   if (features_.kinds_of[species].empty() || crowded(slot)) return lose();
-  find_neighbours(slot, features_.search_radius);
+  find_neighbours(slot, features_.glance_radius);
   const Match* match = &comparer_.match(species, neighbours_);
-  if (search_shifts_ && match->near_stray > 0) {
-    // Perhaps the others are in place and the centre is not.
-    find_neighbours(slot, features_.search_radius + features_.pair_distance);
-    match = &comparer_.match_shifted(species, neighbours_);
+  if (!settled(*match)) {
+    find_neighbours(slot, features_.search_radius);
+    match = &comparer_.match(species, neighbours_);
+    if (search_shifts_ && match->near_stray > 0) {
+      // Perhaps the others are in place and the centre is not.
+      find_neighbours(slot, features_.search_radius + features_.pair_distance);
+      match = &comparer_.match_shifted(species, neighbours_);
+    }
   }
   if (match->lost()) return lose();
   const SiteKind& kind = features_.kinds[match->kind];

@@ -52,6 +52,7 @@ class Examiner {
   };
   void find_neighbours(Index slot, double radius);
   bool crowded(Index slot) const;
+  bool settled(const Match& match) const;
   void pair_displaced(const Match& match);
 
   const Atoms& atoms_;

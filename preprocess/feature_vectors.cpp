@@ -253,8 +253,9 @@ FeatureSet build_feature_vectors(const UnitCell& cell, const std::vector<Species
   }
   // Shells exactly at the radius belong to it whatever the rounding.
   set.radius += slack;
-  const double farthest = std::max(set.radius, set.near_radius);
+  const double farthest = set.farthest_counted();
   set.search_radius = farthest + set.tolerance;
+  set.glance_radius = farthest + std::min(slack, set.tolerance);
 
   // Vectors reach further than what counts, so that nothing near their ends is missing or extra by accident: an atom
   // that strayed out of the neighbourhood or into it still finds its entry.

@@ -2,6 +2,7 @@
 // comparison of a real neighbourhood with them.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -62,9 +63,10 @@ struct FeatureSet {
   double pair_distance = 0.0;      // Å: an atom that far from an empty place of its species is its occupant, displaced
   double noise = 0.0;              // Å: displacements up to it are the rounding of a file
   double search_radius = 0.0;      // Å: neighbours needed for a comparison
+  double glance_radius = 0.0;      // Å: neighbours needed where everybody is nearly in place
   bool tolerance_limited = false;  // the tolerance asked for reached half-way to the next site
 
-  const std::vector<std::uint16_t>& kinds_of_species(std::uint16_t species) const { return kinds_of[species]; }
+  double farthest_counted() const { return std::max(radius, near_radius); }
 };
 
 // `table` names the species of the atoms. Throws what check_unit_cell throws, UsageError for a neighbourhood or

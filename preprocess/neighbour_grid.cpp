@@ -21,6 +21,35 @@ std::uint64_t spread(std::uint64_t key) {
   return key ^ key >> 29;
 }
 
+struct Run {
+  const double* x;
+  const double* y;
+  const double* z;
+  std::size_t count;
+};
+
+// Writes first + n for every place n of the run within √limit of the centre; returns how many.
+std::size_t within(const Run& run, const Vec3& centre, double limit, Index first, Index* out) {
+  constexpr std::size_t block = 64;
+  std::array<double, block> distance2;
+  std::size_t found = 0;
+  for (std::size_t begin = 0; begin < run.count; begin += block) {
+    const std::size_t count = std::min(block, run.count - begin);
+    for (std::size_t n = 0; n < count; ++n) {
+      const double dx = run.x[begin + n] - centre.x;
+      const double dy = run.y[begin + n] - centre.y;
+      const double dz = run.z[begin + n] - centre.z;
+      distance2[n] = dx * dx + dy * dy + dz * dz;
+    }
+    // Every place is written and only kept ones advance: no branch that the processor could guess wrong.
+    for (std::size_t n = 0; n < count; ++n) {
+      out[found] = first + static_cast<Index>(begin + n);
+      found += distance2[n] <= limit ? 1 : 0;
+    }
+  }
+  return found;
+}
+
 bool finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -222,21 +251,18 @@ std::size_t NeighbourGrid::count_candidates(const Vec3& centre, double radius) c
 }
 
 void NeighbourGrid::find(const Vec3& centre, double radius, std::vector<Index>& slots, Index except) const {
-  std::size_t found = 0;
   const double limit = radius * radius;
+  slots.resize(slots.capacity());
+  std::size_t found = 0;
   for_ranges(centre, radius, [&](Index begin, Index end) {
-    if (slots.size() < found + (end - begin)) slots.resize(2 * slots.size() + (end - begin));
-    Index* out = slots.data();
-    // Every slot is written and only kept ones advance: no branch that the processor could guess wrong.
-    for (Index s = begin; s < end; ++s) {
-      const double dx = x_[s] - centre.x;
-      const double dy = y_[s] - centre.y;
-      const double dz = z_[s] - centre.z;
-      out[found] = s;
-      found += static_cast<std::size_t>((dx * dx + dy * dy + dz * dz <= limit) & (s != except));
-    }
+    const std::size_t count = end - begin;
+    if (slots.size() < found + count) slots.resize(2 * slots.size() + count);
+    found += within({&x_[begin], &y_[begin], &z_[begin], count}, centre, limit, begin, slots.data() + found);
   });
   slots.resize(found);
+  if (except == no_index) return;
+  const auto self = std::find(slots.begin(), slots.end(), except);
+  if (self != slots.end()) slots.erase(self);
 }
 
 double median_nearest_distance(std::span<const Vec3> points, const Box& box) {
