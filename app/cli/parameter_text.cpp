@@ -13,28 +13,6 @@ namespace {
 
 constexpr std::string_view species_suffix = "<species>";
 
-std::string type_text(const ParameterRow& row) {
-  switch (row.type) {
-    case ParameterType::boolean:
-      return "true or false";
-    case ParameterType::integer:
-      return fmt::format("whole number {} to {}", row.min, row.max);
-    case ParameterType::real:
-      return fmt::format("number {} to {}", row.min, row.max);
-    case ParameterType::choice:
-      return fmt::format("{}", fmt::join(row.choices, " | "));
-    case ParameterType::rgb:
-      return "colour #rrggbb or r,g,b";
-    case ParameterType::rgba:
-      return "colour #rrggbbaa or r,g,b,a";
-    case ParameterType::vector:
-      return "x,y,z";
-    case ParameterType::color_map:
-      return "colour map: a preset or scalar:colour …";
-  }
-  return "";
-}
-
 std::set<std::string> species_said(const Parameters& parameters) {
   std::set<std::string> names;
   for (const auto& [name, color] : parameters.atoms.colors) names.insert(name);
@@ -51,23 +29,6 @@ bool says(const Parameters& parameters, std::string_view stem, const std::string
 }
 
 }  // namespace
-
-std::string parameter_reference() {
-  const Parameters defaults;
-  std::string out;
-  std::string group;
-  for (const ParameterRow& row : parameter_table()) {
-    if (row.group != group) {
-      group = row.group;
-      out += fmt::format("{}{}\n", out.empty() ? "" : "\n", group);
-    }
-    const bool of_species = row.key.ends_with(species_suffix);
-    out += fmt::format("  {}{}\n      {}{}\n      {}\n", row.key,
-                       of_species ? "" : " = " + get_parameter(defaults, row.key), type_text(row),
-                       row.unit.empty() ? "" : ", in " + row.unit, row.help);
-  }
-  return out;
-}
 
 std::string parameter_lines(const Parameters& parameters) {
   std::string out;

@@ -1,4 +1,4 @@
-// The display parameters as text: the reference behind --help-parameters, and what a picture carries with it.
+// The display parameters as a picture carries them, and as --set names them.
 #pragma once
 
 #include <string>
@@ -7,9 +7,6 @@
 #include "core/parameters.h"
 
 namespace atomesh::cli {
-
-// Every row of parameter_table(): key, type, default, range, unit and help, under the headings of its groups.
-std::string parameter_reference();
 
 // "key=value" lines that --set reads back to exactly these parameters; species keys where they say something.
 std::string parameter_lines(const Parameters& parameters);

@@ -82,7 +82,7 @@ std::string difference_path(const std::string& output) {
 
 int run_render(const RenderArguments& arguments, const CLI::App& app, Session& session) {
   if (arguments.help_parameters) {
-    session.print_text(parameter_reference());
+    session.print_text(parameter_documentation());
     return exit_done;
   }
   if (arguments.input.empty()) throw UsageError("render: expected FILE, a .crb, .crt or atoms file");
