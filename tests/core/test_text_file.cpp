@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/text_file.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace atomesh::test {
 namespace {
@@ -82,50 +82,50 @@ TEST(ParseInteger, TakesWholeNumbersThatFit) {
 }
 
 TEST(MappedFile, GivesTheBytes) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const MappedFile file(folder.file("a", std::string_view("x\0y", 3)));
   EXPECT_EQ(file.bytes(), std::string_view("x\0y", 3));
   EXPECT_EQ(MappedFile(folder.file("empty", "")).bytes().size(), 0u);
 }
 
 TEST(MappedFile, RefusesWhatIsNoFile) {
-  const TempFolder folder;
-  EXPECT_THROW(MappedFile(folder / "missing"), InputError);
+  const TemporaryFolder folder;
+  EXPECT_THROW(MappedFile(folder.file("missing")), InputError);
   EXPECT_THROW(MappedFile(folder.path().string()), InputError);
-  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_THROW(MappedFile(folder / "pipe"), InputError);  // and does not wait for a writer
+  ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  EXPECT_THROW(MappedFile(folder.file("pipe")), InputError);  // and does not wait for a writer
 }
 
 TEST(AtomicFile, AppearsOnCommit) {
-  const TempFolder folder;
-  AtomicFile file(folder / "a");
+  const TemporaryFolder folder;
+  AtomicFile file(folder.file("a"));
   file.write("new");
-  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a")));
   file.commit();
-  EXPECT_EQ(read_whole(folder / "a"), "new");
+  EXPECT_EQ(read_bytes(folder.file("a")), "new");
 }
 
 TEST(AtomicFile, WithoutCommitTheOldFileStays) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   folder.file("a", "old");
   {
-    AtomicFile file(folder / "a");
+    AtomicFile file(folder.file("a"));
     file.write("half");
   }
-  EXPECT_EQ(read_whole(folder / "a"), "old");
+  EXPECT_EQ(read_bytes(folder.file("a")), "old");
   const std::filesystem::directory_iterator entries(folder.path());
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
 }
 
 TEST(AtomicFile, FollowsLinksAndWritesThroughDevices) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   folder.file("target", "old");
-  std::filesystem::create_symlink(folder / "target", folder / "link");
-  AtomicFile file(folder / "link");
+  std::filesystem::create_symlink(folder.file("target"), folder.file("link"));
+  AtomicFile file(folder.file("link"));
   file.write("new");
   file.commit();
-  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
-  EXPECT_EQ(read_whole(folder / "target"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link")));
+  EXPECT_EQ(read_bytes(folder.file("target")), "new");
   AtomicFile device("/dev/null");
   device.write("gone");
   device.commit();
@@ -133,9 +133,9 @@ TEST(AtomicFile, FollowsLinksAndWritesThroughDevices) {
 }
 
 TEST(AtomicFile, SaysWhyItCannotBeWritten) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   EXPECT_THROW(AtomicFile(folder.path().string()), Error);
-  EXPECT_THROW(AtomicFile(folder / "no/such/folder"), Error);
+  EXPECT_THROW(AtomicFile(folder.file("no/such/folder")), Error);
 }
 
 }  // namespace

@@ -9,18 +9,18 @@
 
 #include "core/error.h"
 #include "preprocess/read_atoms.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace atomesh::test {
 
 inline ReadResult read_text(const std::string& name, std::string_view content, const ReadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   return read_atoms(folder.file(name, content), options);
 }
 
 // The message of the InputError that reading this text ends in, without the folder; "" when it is read.
 inline std::string input_error(const std::string& name, std::string_view content, const ReadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   try {
     read_atoms(folder.file(name, content), options);
   } catch (const InputError& error) {

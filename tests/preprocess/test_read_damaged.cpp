@@ -80,13 +80,13 @@ TEST(ReadDamaged, WholeFilesAreRead) {
 }
 
 TEST(ReadDamaged, CutAnywhere) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   for (const Whole& whole : whole_files()) {
     SCOPED_TRACE(whole.format);
     int read = 0;
     int refused = 0;
     for (std::size_t length = 0; length < whole.content.size(); ++length) {
-      read_damaged(folder / "a.dat", whole.format, whole.content.substr(0, length), read, refused);
+      read_damaged(folder.file("a.dat"), whole.format, whole.content.substr(0, length), read, refused);
     }
     EXPECT_GT(read, 0);
     EXPECT_GT(refused, 0);
@@ -94,7 +94,7 @@ TEST(ReadDamaged, CutAnywhere) {
 }
 
 TEST(ReadDamaged, BytesAndLinesChangedAtRandom) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::mt19937 random(20);
   const auto below = [&random](std::size_t limit) {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
@@ -132,7 +132,7 @@ TEST(ReadDamaged, BytesAndLinesChangedAtRandom) {
         }
         if (content.empty()) content = "x";
       }
-      read_damaged(folder / "a.xyz", whole.format, content, read, refused);
+      read_damaged(folder.file("a.xyz"), whole.format, content, read, refused);
     }
     EXPECT_GT(read, 100);
     EXPECT_GT(refused, 100);
@@ -140,7 +140,7 @@ TEST(ReadDamaged, BytesAndLinesChangedAtRandom) {
 }
 
 TEST(ReadDamaged, Garbage) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::mt19937 random(21);
   int read = 0;
   int refused = 0;
@@ -148,7 +148,7 @@ TEST(ReadDamaged, Garbage) {
     for (int round = 0; round < 100; ++round) {
       std::string content(std::uniform_int_distribution<std::size_t>(1, 300)(random), ' ');
       for (char& c : content) c = static_cast<char>(random() % 256);
-      read_damaged(folder / "a.dump", whole.format, content, read, refused);
+      read_damaged(folder.file("a.dump"), whole.format, content, read, refused);
     }
   }
   EXPECT_EQ(read, 0);

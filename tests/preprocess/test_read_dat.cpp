@@ -104,12 +104,12 @@ TEST(ReadDat, SaysWhatWasExpectedAndWhere) {
 }
 
 TEST(ReadDat, UnitCellAlone) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string cell = "primitive\n1 0 0\n0 1 0\n0 0 1\nbasis 1\nNa 0 0 0\n";
   EXPECT_EQ(read_unit_cell(folder.file("cell.dat", cell)).basis.size(), 1u);
   EXPECT_EQ(read_unit_cell(folder.file("salt.dat", salt)).basis.size(), 2u);
   EXPECT_THROW(read_unit_cell(folder.file("none.dat", "Na 0 0 0\n")), InputError);
-  EXPECT_THROW(read_unit_cell(folder / "missing.dat"), InputError);
+  EXPECT_THROW(read_unit_cell(folder.file("missing.dat")), InputError);
 }
 
 TEST(ReadAtoms, ExactDuplicatesAreDroppedAndCounted) {
@@ -183,13 +183,13 @@ TEST(ReadAtoms, WhatIsNoFileOfAtoms) {
                                                     7))
                   .starts_with("a.xyz: is a binary file"));
   EXPECT_TRUE(input_error("a.cif", "data_NaCl\n").starts_with("a.cif: is in no format that is read"));
-  const TempFolder folder;
+  const TemporaryFolder folder;
   EXPECT_THROW(read_atoms(folder.path().string()), InputError);
-  EXPECT_THROW(read_atoms(folder / "missing.dat"), InputError);
+  EXPECT_THROW(read_atoms(folder.file("missing.dat")), InputError);
 }
 
 TEST(ReadAtoms, CanBeCancelled) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string file = folder.file("a.dat", salt);
   Progress progress;
   progress.request_cancel();

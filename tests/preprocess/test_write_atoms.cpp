@@ -37,11 +37,11 @@ UnitCell hard_cell() {
 }
 
 TEST(WriteAtoms, DatReadsBackToTheSameBits) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const Atoms atoms = hard_atoms();
   const UnitCell cell = hard_cell();
-  write_atoms(folder / "a.dat", atoms, cell);
-  const ReadResult read = read_atoms(folder / "a.dat");
+  write_atoms(folder.file("a.dat"), atoms, cell);
+  const ReadResult read = read_atoms(folder.file("a.dat"));
   EXPECT_EQ(read.report.format, "dat");
   expect_same_atoms(atoms, read.atoms);
   EXPECT_EQ(atoms.species, read.atoms.species);
@@ -60,15 +60,15 @@ TEST(WriteAtoms, DatReadsBackToTheSameBits) {
 }
 
 TEST(WriteAtoms, XyzReadsBackToTheSameBits) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   Atoms atoms = hard_atoms();
   for (const char* name : {"c_stress[1]", "velo_1", "energy"}) {
     Column column{name, {}};
     for (std::size_t i = 0; i < atoms.size(); ++i) column.values.push_back(atoms.positions[i].x / 3.0);
     atoms.columns.push_back(column);
   }
-  write_atoms(folder / "a.xyz", atoms);
-  const ReadResult read = read_atoms(folder / "a.xyz");
+  write_atoms(folder.file("a.xyz"), atoms);
+  const ReadResult read = read_atoms(folder.file("a.xyz"));
   EXPECT_EQ(read.report.format, "extxyz");
   expect_same_atoms(atoms, read.atoms);
   EXPECT_EQ(atoms.ids, read.atoms.ids);
@@ -82,13 +82,13 @@ TEST(WriteAtoms, XyzReadsBackToTheSameBits) {
 }
 
 TEST(WriteAtoms, WithoutBoxCellAndColumns) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   Atoms atoms = hard_atoms();
   atoms.box = Box{};
   atoms.ids.clear();
   for (const char* name : {"a.dat", "a.xyz"}) {
-    write_atoms(folder / name, atoms);
-    const ReadResult read = read_atoms(folder / name);
+    write_atoms(folder.file(name), atoms);
+    const ReadResult read = read_atoms(folder.file(name));
     expect_same_atoms(atoms, read.atoms);
     EXPECT_FALSE(read.atoms.box.present());
     EXPECT_FALSE(read.unit_cell.has_value());
@@ -98,30 +98,30 @@ TEST(WriteAtoms, WithoutBoxCellAndColumns) {
 }
 
 TEST(WriteAtoms, RefusesWhatCouldNotBeReadBackAndLeavesNoFile) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   Atoms atoms = hard_atoms();
-  EXPECT_THROW(write_atoms(folder / "a.cif", atoms), UsageError);
-  EXPECT_THROW(write_atoms(folder / "a.dat", Atoms{}), Error);
+  EXPECT_THROW(write_atoms(folder.file("a.cif"), atoms), UsageError);
+  EXPECT_THROW(write_atoms(folder.file("a.dat"), Atoms{}), Error);
   for (const char* name : {"box", "origin", "a b", "#1", ""}) {
     Atoms named = atoms;
     named.species_table[1].name = name;
-    EXPECT_THROW(write_atoms(folder / "a.dat", named), Error) << name;
+    EXPECT_THROW(write_atoms(folder.file("a.dat"), named), Error) << name;
   }
   Atoms column = atoms;
   column.columns.push_back({"a:b", std::vector<double>(atoms.size(), 0.0)});
-  EXPECT_THROW(write_atoms(folder / "a.xyz", column), Error);
+  EXPECT_THROW(write_atoms(folder.file("a.xyz"), column), Error);
   atoms.positions[5].y = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(write_atoms(folder / "a.dat", atoms), Error);
+  EXPECT_THROW(write_atoms(folder.file("a.dat"), atoms), Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(WriteAtoms, CancellingKeepsTheOldFile) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   folder.file("a.dat", "old");
   Progress progress;
   progress.request_cancel();
-  EXPECT_THROW(write_atoms(folder / "a.dat", hard_atoms(), {}, progress), CancelledError);
-  EXPECT_EQ(read_whole(folder / "a.dat"), "old");
+  EXPECT_THROW(write_atoms(folder.file("a.dat"), hard_atoms(), {}, progress), CancelledError);
+  EXPECT_EQ(read_bytes(folder.file("a.dat")), "old");
 }
 
 }  // namespace

@@ -27,7 +27,13 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  const std::filesystem::path& path() const { return path_; }
+  // The path of a file in the folder; the second form also writes it.
   std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string file(const std::string& name, std::string_view content) const {
+    std::ofstream(file(name), std::ios::binary) << content;
+    return file(name);
+  }
   // Number of files in the folder.
   std::size_t count() const {
     std::size_t n = 0;
