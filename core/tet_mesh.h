@@ -8,6 +8,8 @@
 
 namespace atomesh {
 
+inline constexpr double delaunay_tolerance = 1e-6;
+
 // Invariants, checked by validate(): every tetrahedron is positively oriented (signed_volume > 0, exactly), names four
 // different vertices, and a face is shared by at most two tetrahedra, which see it with opposite orientation.
 struct TetMesh {
@@ -16,7 +18,9 @@ struct TetMesh {
   // Vertex → atom (index into Atoms). Several atoms on one exact position share one vertex, which names the first of
   // them. no_index for a vertex that is no atom. Atoms in no tetrahedron still have a vertex.
   std::vector<Index> vertex_atom;
-  // True while the tetrahedra are a subset of a Delaunay tetrahedralization of the vertices (carving keeps it).
+  // True while the tetrahedra are a subset of a Delaunay tetrahedralization of the vertices (carving keeps it): across
+  // no face does a vertex lie inside the other tetrahedron's circumsphere by more than delaunay_tolerance of its
+  // radius.
   bool delaunay = false;
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/circumsphere.h"
 #include "core/predicates.h"
 #include "core/tet_mesh.h"
 
@@ -81,6 +82,10 @@ Triangle face_of(const Tetrahedron& tet, int f) {
   return {tet[face_corners[f][0]], tet[face_corners[f][1]], tet[face_corners[f][2]]};
 }
 
+bool deep_inside(const Sphere& sphere, const Vec3& p) {
+  return sphere.radius - glm::length(p - sphere.center) > delaunay_tolerance * sphere.radius;
+}
+
 void check_faces(const TetMesh& mesh, Complaints& complaints) {
   std::vector<std::array<Index, 4>> neighbours;
   try {
@@ -102,7 +107,8 @@ void check_faces(const TetMesh& mesh, Complaints& complaints) {
       } else if (mesh.delaunay) {
         const auto& v = mesh.vertices;
         const Vec3& apex = v[mesh.tetrahedra[other][g]];
-        if (in_sphere(v[tet[0]], v[tet[1]], v[tet[2]], v[tet[3]], apex) > 0) {
+        if (in_sphere(v[tet[0]], v[tet[1]], v[tet[2]], v[tet[3]], apex) > 0 &&
+            deep_inside(circumsphere(v[tet[0]], v[tet[1]], v[tet[2]], v[tet[3]]), apex)) {
           complaints.add(pair + " are not Delaunay: each has a vertex inside the other's circumsphere");
         }
       }

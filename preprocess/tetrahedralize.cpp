@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "preprocess/canonical_tetrahedra.h"
+#include "preprocess/remove_slivers.h"
 
 namespace atomesh {
 
@@ -77,6 +78,7 @@ TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options,
                      : "asked for";
     mesh.tetrahedra = delaunay_cgal(mesh.vertices, progress);
   }
+  report.slivers_removed = remove_slivers(mesh.tetrahedra, mesh.vertices);
   put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size());
   progress.update(1.0);
   return mesh;

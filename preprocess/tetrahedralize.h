@@ -19,6 +19,7 @@ struct TetrahedralizeReport {
   std::string why;                  // one sentence: why auto chose it
   std::size_t merged_vertices = 0;  // atoms that share another atom's exact position
   std::size_t flat_removed = 0;     // tetrahedra of exactly zero volume that the mesher made and that were removed
+  std::size_t slivers_removed = 0;  // tetrahedra that only rounding kept from zero volume: see remove_slivers.h
 };
 
 // One vertex per distinct position. Fewer than four atoms, or all in one plane, give a mesh without tetrahedra. No flat
