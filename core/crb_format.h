@@ -7,8 +7,8 @@
 //
 // So every bit of the file is under a checksum: the header and the table under the header's, a section's stored bytes
 // under its entry's. A section is stored raw, or as zstd frames of `crb_block` uncompressed bytes each (the last one
-// shorter) whose bytes were first regrouped: first bytes of all elements, then the second bytes, and so on. A reader
-// takes the sections it needs and touches no page of the others.
+// shorter), whose bytes were first regrouped where that packs better: first bytes of all elements, then the second
+// bytes, and so on. A reader takes the sections it needs and touches no page of the others.
 //
 // All sections together may not unpack to more than 1024 times the file's size and a MiB: a file of a few bytes cannot
 // ask for all of a machine's memory. A writer that would break the rule stores its sections raw.
