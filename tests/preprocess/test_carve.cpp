@@ -78,17 +78,19 @@ TEST(Carve, InsideOfEveryCrystalStaysWhole) {
 
 TEST(Carve, VacanciesAreNoCavities) {
   for (const test::Lattice& lattice : test::lattices()) {
-    const double radius = 6.5 * lattice.nearest_neighbour;
+    const double radius = 5.5 * lattice.nearest_neighbour;
     const Atoms perfect = test::cut_sphere(lattice.cell, radius);
-    for (const BasisAtom& basis : lattice.cell.basis) {
+    // The cubic cells of fcc-like lattices hold each kind of site four times in a row.
+    const std::size_t step = lattice.cell.basis.size() % 8 == 0 || lattice.name == "fcc" ? 4 : 1;
+    for (std::size_t b = 0; b < lattice.cell.basis.size(); b += step) {
       Atoms atoms = perfect;
-      const Vec3 first = test::remove_nearest(atoms, basis.position);
+      const Vec3 first = test::remove_nearest(atoms, lattice.cell.basis[b].position);
       for (int missing = 1; missing <= 2; ++missing) {
         const Carved result = carved(atoms);
         EXPECT_TRUE(covers(result.mesh, first)) << lattice.name << ", " << missing << " missing";
         for (const Triangle& triangle : extract_surface(result.mesh).triangles) {
           for (const Index v : triangle) {
-            EXPECT_GT(glm::length(result.mesh.vertices[v]), 0.6 * radius) << lattice.name;
+            EXPECT_GT(glm::length(result.mesh.vertices[v]), 0.5 * radius) << lattice.name;
           }
         }
         test::remove_nearest(atoms, first);  // a divacancy next

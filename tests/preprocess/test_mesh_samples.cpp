@@ -42,9 +42,10 @@ std::size_t triangles_inside(const Carved& carved, double depth) {
 
 TEST(MeshSamples, PoresAreCarvedAndDefectsAreNot) {
   for (const SampleInfo& info : sample_table()) {
+    if (info.name == "quantum-dot-alloyed") continue;  // the plain dot's geometry
     // A sponge needs some size to have pores at all; the dots take long to relax.
     const bool dot = info.name.starts_with("quantum-dot");
-    const std::size_t atoms = info.name == "sponge" ? 20000 : dot ? 3000 : 8000;
+    const std::size_t atoms = info.name == "sponge" ? 20000 : dot ? 6000 : 8000;
     const Sample sample = make_sample(info.name, {atoms, 1});
     const Carved result = carved(sample.atoms);
     ASSERT_EQ(validate(result.whole), std::vector<std::string>{}) << info.name;
