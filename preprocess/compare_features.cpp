@@ -1,5 +1,7 @@
 #include "preprocess/compare_features.h"
 
+#include <algorithm>
+
 namespace atomesh {
 
 namespace {
@@ -62,14 +64,35 @@ const Match& FeatureComparer::match_kind(std::uint16_t kind, const Vec3& shift,
   return best_;
 }
 
+// The kinds of a species, those first whose near entries most neighbours are at: at most that many can match.
+void FeatureComparer::rank(std::uint16_t species, const std::vector<Neighbour>& neighbours) {
+  ranked_.clear();
+  const std::vector<std::uint16_t>& kinds = features_.kinds_of[species];
+  // Trying one or two outright costs less than ranking them.
+  const bool few = kinds.size() <= 2;
+  for (const std::uint16_t number : kinds) ranked_.push_back({few ? neighbours.size() : 0, number});
+  if (few) return;
+  const double reach = features_.near_radius + features_.tolerance;
+  for (const Neighbour& n : neighbours) {
+    if (square(n.d) > reach * reach) continue;
+    for (Ranked& ranked : ranked_) {
+      const SiteKind& kind = features_.kinds[ranked.kind];
+      const int e = kind.lookup.find(kind.entries, n.d);
+      if (e >= 0 && e < static_cast<int>(kind.near) && kind.entries[e].species == n.species) ++ranked.most;
+    }
+  }
+  std::stable_sort(ranked_.begin(), ranked_.end(), [](const Ranked& a, const Ranked& b) { return a.most > b.most; });
+}
+
 const Match& FeatureComparer::match(std::uint16_t species, const std::vector<Neighbour>& neighbours) {
   best_.kind = no_kind;
-  for (const std::uint16_t kind : features_.kinds_of[species]) {
+  rank(species, neighbours);
+  for (const Ranked& ranked : ranked_) {
+    if (best_.kind != no_kind && ranked.most < best_.near_matched) break;
     Match& target = best_.kind == no_kind ? best_ : trial_;
-    fill(target, kind, Vec3(0.0), neighbours, false);
+    fill(target, ranked.kind, Vec3(0.0), neighbours, false);
     if (&target == &trial_ && better(trial_, best_)) std::swap(best_, trial_);
-    const double noise2 = features_.noise * features_.noise;
-    if (best_.matched == neighbours.size() && best_.squares <= noise2 * static_cast<double>(best_.matched)) break;
+    if (best_.matched == neighbours.size() && best_.squares <= features_.noise * features_.noise) break;
   }
   return best_;
 }

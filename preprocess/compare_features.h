@@ -51,10 +51,17 @@ class FeatureComparer {
  private:
   void fill(Match& match, std::uint16_t kind, const Vec3& shift, const std::vector<Neighbour>& neighbours,
             bool any_species) const;
+  void rank(std::uint16_t species, const std::vector<Neighbour>& neighbours);
   void refine(const std::vector<Neighbour>& neighbours);
   bool site_taken(std::uint16_t species, const Vec3& shift, const std::vector<Neighbour>& neighbours) const;
 
+  struct Ranked {
+    std::size_t most;
+    std::uint16_t kind;
+  };
+
   const FeatureSet& features_;
+  std::vector<Ranked> ranked_;
   Match best_;
   Match trial_;
 };
