@@ -2,8 +2,10 @@
 // each intersected with sixteen rays at a time, ordered per block of 4×4 pixels and composed front to back.
 //
 // Any set of cells that do not overlap is drawn right, cyclic ones included; where cells overlap, the one whose entry
-// is nearer comes first. Memory beyond the scene: 24 bytes a vertex, 1 to 5 bytes a cell, 4 bytes for each tile a cell
-// touches, and what one tile needs for each thread.
+// is nearer comes first. Rays pass 6e-5 of a pixel beside the pixel's centre (cell_projection_kernel.h says why): next
+// to an exact picture a pixel is off by that share of its difference to its neighbours, beside the rounding of float.
+// Memory beyond the scene: 33 bytes a vertex, 4 bytes for each tile of 32×32 pixels that a cell touches, in mode
+// volume_surface 1 byte a cell and 16 bytes a surface triangle, and for each thread what its tile needs.
 #pragma once
 
 #include "core/camera.h"
