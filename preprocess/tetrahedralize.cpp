@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "preprocess/canonical_tetrahedra.h"
 #include "preprocess/remove_slivers.h"
 
