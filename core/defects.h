@@ -11,13 +11,13 @@ namespace atomesh {
 struct VacancySite {
   Vec3 position;          // Å
   std::uint16_t species;  // index into Atoms::species_table of what is missing
-  Index votes;            // neighbours that miss an atom there
+  Index votes;            // neighbours that miss an atom there, first shells included where the radius is shorter
 };
 
 // An atom that sits on no site of its species.
 struct ExtraAtom {
   Index atom;   // index into Atoms
-  Index votes;  // neighbours to whom it is one too many
+  Index votes;  // atoms in the first shells to whom it is one too many; 0 is possible for a foreign species
 };
 
 struct Defects {

@@ -28,9 +28,9 @@ struct Misfits {
   std::vector<Index> strays;
 
   std::span<const std::uint32_t> missing_of(const Misfit& m) const {
-    return {&missing[0] + m.first_missing, m.missing};
+    return {missing.data() + m.first_missing, m.missing};
   }
-  std::span<const Index> strays_of(const Misfit& m) const { return {&strays[0] + m.first_stray, m.strays}; }
+  std::span<const Index> strays_of(const Misfit& m) const { return {strays.data() + m.first_stray, m.strays}; }
 };
 
 // The sample as the search for sites sees it.
