@@ -134,7 +134,12 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
     material.mesh = stage("tetrahedralize", [&] {
       return tetrahedralize(material.atoms, options.tetrahedralize, report.tetrahedralize, progress);
     });
-    if (options.carve) {
+    // What thinning out left has no nearest-neighbour distance to tell matter from emptiness by.
+    const bool thinned = report.reduce.dropped > 0;
+    if (options.carve && thinned && options.carve_options.radius <= 0.0) {
+      report.notes.emplace_back(
+          "nothing was carved: the sample was thinned out, so no radius can be told from it; give one with --carve");
+    } else if (options.carve) {
       material.mesh =
           stage("carve", [&] { return carve(material.mesh, options.carve_options, report.carve, progress); });
     }

@@ -109,8 +109,20 @@ TEST_F(Pipeline, ReducedSamplesAreNotComparedWithTheCrystal) {
   const Material material = run(options);
   EXPECT_LT(material.atoms.size(), static_cast<std::size_t>(side * side * side - 1));
   EXPECT_FALSE(material.defects.present());
-  ASSERT_EQ(report_.notes.size(), 1U);
-  EXPECT_NE(report_.notes[0].find("--scalar"), std::string::npos);
+  ASSERT_EQ(report_.notes.size(), 2U);
+  EXPECT_NE(report_.notes[0].find("--carve"), std::string::npos);
+  EXPECT_NE(report_.notes[1].find("--scalar"), std::string::npos);
+}
+
+TEST_F(Pipeline, ThinnedSamplesAreCarvedOnlyByAGivenRadius) {
+  PipelineOptions options;
+  options.reduce.keep_every = 4;
+  options.reduce.boundary_distance = 1.0;
+  const Material whole = run(options);
+  const double edge = lattice_constant * (side - 1);
+  EXPECT_NEAR(volume(whole.mesh), edge * edge * edge, 1e-9);
+  options.carve_options.radius = 1.0;  // smaller than any cell's
+  EXPECT_TRUE(run(options).mesh.tetrahedra.empty());
 }
 
 TEST_F(Pipeline, ProvenanceTellsOptionsAndCounts) {
