@@ -76,7 +76,12 @@ Sample grow(std::size_t atoms, double indium_share, std::uint64_t seed, Progress
                 std::to_string(report.largest_force) + " eV/Å");
   }
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    if (glm::distance(sample.atoms.positions[i], sites[i]) > displaced_threshold) {
+    const Vec3& p = sample.atoms.positions[i];
+    if (sample.atoms.species[i] == indium) {
+      // A foreign atom on a gallium site, which has moved with it.
+      sample.truth.extras.push_back(static_cast<Index>(i));
+      sample.truth.vacancies.push_back({p, "Ga"});
+    } else if (glm::distance(p, sites[i]) > displaced_threshold) {
       sample.truth.displaced.push_back(static_cast<Index>(i));
     }
   }

@@ -85,7 +85,7 @@ const std::vector<Entry>& entries() {
         "Quantum dot",
         86338,
         "An InAs lens on a wetting layer of one monolayer, buried in GaAs and relaxed by Keating's force field; column "
-        "indium is 1 on indium, else 0 (indium is not listed as a defect)",
+        "indium is 1 on indium, else 0 (each indium is an extra atom on a vacant gallium site)",
         {84376, 611, 145, 16, 175, 114}},
        6000,
        grow_quantum_dot},

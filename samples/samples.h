@@ -25,12 +25,11 @@ struct SampleTruth {
     std::string species;
   };
   // Lattice sites of the crystal inside the sample that hold no atom of their species: empty, or taken by a foreign
-  // one.
+  // one (then where that one is: in a strained crystal the site has moved with it).
   std::vector<Site> vacancies;
   // Atoms on no site of their species (interstitials, substituted atoms), index into the atoms, ascending.
   std::vector<Index> extras;
-  // Atoms on a site of their species but more than 0.01 Å from it, ascending; for a quantum dot all species count, as
-  // its indium (listed neither as extra nor as vacancy) is what the lattice relaxes around.
+  // Atoms on a site of their species but more than 0.01 Å from it, ascending.
   std::vector<Index> displaced;
 };
 
