@@ -11,7 +11,8 @@
 #include "app/cli/session.h"
 #include "app/cli/species_count.h"
 #include "app/cli/text_table.h"
-#include "core/error.h"
+#include "core/crb_format.h"
+#include "core/crt_material.h"
 
 namespace atomesh::cli {
 namespace {
@@ -89,6 +90,11 @@ Json provenance_json(const Provenance& provenance) {
                        {"stages", stages}});
 }
 
+// Of the file format; a reader accepts no other. Atoms files have none.
+Json version_of(const std::string& kind) {
+  return kind == "crb" ? Json(crb_version) : kind == "crt" ? Json(crt_version) : Json();
+}
+
 // "crb" and "crt" are material files; an atoms file says how it was read.
 std::string kind_of(const std::string& path, const LoadedMaterial& loaded) {
   if (loaded.report) return loaded.report->read.format;
@@ -164,7 +170,7 @@ int run_info(const InfoArguments& arguments, const CLI::App& app, Session& sessi
     for (const std::string& problem : problems) problem_list.push(problem);
     session.write_json(Json::object({{"file", arguments.input},
                                      {"kind", kind},
-                                     {"version", material.provenance.program},
+                                     {"version", version_of(kind)},
                                      {"bytes", std::filesystem::file_size(arguments.input)},
                                      {"atoms", material.atoms.size()},
                                      {"tetrahedra", material.mesh.tetrahedra.size()},

@@ -216,12 +216,14 @@ TEST_F(Subcommands, InfoSaysWhatIsThere) {
   expect_keys(crb, {"file", "kind", "version", "atoms", "tetrahedra", "triangles", "box", "species", "scalars",
                     "provenance", "valid"});
   EXPECT_EQ(crb["kind"], "crb");
+  EXPECT_EQ(crb["version"], 1);
   EXPECT_EQ(crb["valid"], true) << crb["problems"];
   EXPECT_EQ(crb["scalars"]["vacancy"].size(), 2U);
   EXPECT_EQ(crb["provenance"]["input"], "d.dat");
   EXPECT_GT(crb["sections"].size(), 3U);
   const json dat = run_json({"info", "d.dat"});
   EXPECT_EQ(dat["kind"], "dat");
+  EXPECT_TRUE(dat["version"].is_null());
   EXPECT_EQ(dat["tetrahedra"], crb["tetrahedra"]);
   EXPECT_NE(run({"info", "d.crb"}).out.find("valid"), std::string::npos);
 }
