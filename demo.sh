@@ -41,7 +41,7 @@ picture volume-surface -40,25
 picture volume -40,25
 picture surface -65,28
 picture xray left
-picture atoms -94,12
+picture atoms -40,25
 
 defect_table() { "$atomesh" defects "$out/$sample.crb" --csv "$out/$sample-defects.csv" >"$out/$sample-defects.txt"; }
 step "defect table: $out/$sample-defects.txt and .csv" defect_table

@@ -30,9 +30,9 @@ struct Defects {
   std::vector<ExtraAtom> extras;
 
   bool present() const { return !positional.empty(); }
-  // True where any of the three values is not zero.
-  bool defective(std::size_t atom) const {
-    return present() && (positional[atom] != 0.0F || vacancy[atom] != 0.0F || extra[atom] != 0.0F);
+  // True where any of the three values is above `limit`.
+  bool defective(std::size_t atom, float limit = 0.0F) const {
+    return present() && (positional[atom] > limit || vacancy[atom] > limit || extra[atom] > limit);
   }
 };
 

@@ -214,6 +214,10 @@ void add_atoms(Table& t) {
       "atoms.regular_opacity", "Regular atom opacity", "", 0, 1,
       "Opacity of atoms without a defect in their neighborhood.",
       [](Parameters & p) -> auto& { return p.atoms.regular_opacity; });
+  t.real(
+      "atoms.regular_limit", "Regular atom limit", "", 0, 1e6,
+      "Atoms none of whose three defect values is above this are regular; raise it to see only the strongest defects.",
+      [](Parameters & p) -> auto& { return p.atoms.regular_limit; });
   t.rgb(
       "atoms.color.<species>", "Atom-ball colors", "Color of a species; \"auto\" is its element's.",
       [](Parameters & p) -> auto& { return p.atoms.colors; });

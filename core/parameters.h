@@ -96,8 +96,9 @@ struct XrayParameters {
 
 // B.6.3.5
 struct AtomsParameters {
-  double scale = 1.0;                                // 1 draws each atom with its species' radius
-  double regular_opacity = 1.0;                      // of atoms whose three defect values are zero
+  double scale = 1.0;            // 1 draws each atom with its species' radius
+  double regular_opacity = 1.0;  // of atoms none of whose defect values is above regular_limit
+  double regular_limit = 0.0;
   std::map<std::string, Vec3f, std::less<>> colors;  // by species name; absent: default_species_color
   std::map<std::string, bool, std::less<>> visible;  // by species name; absent: visible
   std::map<std::string, double, std::less<>> radii;  // Å, by species name; absent: the material's own

@@ -38,13 +38,14 @@ std::vector<Ball> make_balls(const Material& material, const Parameters& paramet
   const Atoms& atoms = material.atoms;
   const std::vector<SpeciesStyle> styles = species_styles(atoms, parameters.atoms);
   const auto regular = static_cast<float>(parameters.atoms.regular_opacity);
+  const auto limit = static_cast<float>(parameters.atoms.regular_limit);
   const bool cut = any_cut(parameters);
   std::vector<Ball> balls;
   balls.reserve(atoms.size());
   for (std::size_t a = 0; a < atoms.size(); ++a) {
     const SpeciesStyle& style = styles[atoms.species[a]];
     // Opacity only asks for the defects where it depends on them: they need not have been read otherwise.
-    const float opacity = regular >= 1.0F || material.defects.defective(a) ? 1.0F : regular;
+    const float opacity = regular >= 1.0F || material.defects.defective(a, limit) ? 1.0F : regular;
     if (!style.visible || style.radius <= 0.0 || opacity <= 0.0F) continue;
     if (cut && !survives_cuts(parameters, atoms.positions[a])) continue;
     balls.push_back({Vec3f(atoms.positions[a] - center), static_cast<float>(style.radius), Vec4f(style.color, opacity),

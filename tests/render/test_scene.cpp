@@ -116,6 +116,26 @@ TEST(Scene, WithoutDefectsEverythingIsRegular) {
   for (const Ball& ball : make_scene(material, parameters).balls) EXPECT_EQ(ball.color.a, 0.25F);
 }
 
+TEST(Scene, RegularAtomsAreThoseBelowTheLimit) {
+  Material material = one_tetrahedron();
+  material.defects.positional = {0.0F, 0.5F, 0.0F, 0.0F};
+  material.defects.extra = {0.0F, 0.0F, 2.0F, 0.0F};
+  material.defects.vacancy = {0.0F, 0.0F, 0.0F, 0.25F};
+  Parameters parameters = looking(Mode::atoms, "front");
+  parameters.atoms.regular_opacity = 0.25;
+  const auto opaque = [&](double limit) {
+    parameters.atoms.regular_limit = limit;
+    std::vector<Index> atoms;
+    for (const Ball& ball : make_scene(material, parameters).balls) {
+      if (ball.color.a == 1.0F) atoms.push_back(ball.atom);
+    }
+    return atoms;
+  };
+  EXPECT_EQ(opaque(0.0), (std::vector<Index>{1, 2, 3}));
+  EXPECT_EQ(opaque(0.25), (std::vector<Index>{1, 2}));
+  EXPECT_EQ(opaque(1.0), (std::vector<Index>{2}));
+}
+
 TEST(Scene, AtomsOnOneVertexColourItWithTheLargestOfEachDefect) {
   Material material = one_tetrahedron();
   material.atoms.positions.push_back(material.atoms.positions[2]);
