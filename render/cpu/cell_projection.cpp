@@ -48,7 +48,7 @@ View make_view(const Scene& scene, const Camera& camera) {
 class Drawing {
  public:
   Drawing(const Scene& scene, const Camera& camera, const Parameters& parameters)
-      : scene_(scene), camera_(camera), view_(make_view(scene, camera)), kernel_(kernel()) {
+      : scene_(scene), camera_(camera), parameters_(parameters), view_(make_view(scene, camera)), kernel_(kernel()) {
     const bool layered = scene.mode == Mode::volume_surface;
     alpha_length_ = layered ? parameters.volume_surface.alpha_length : parameters.volume.alpha_length;
     optics_.alpha_length = static_cast<float>(alpha_length_);
@@ -57,8 +57,6 @@ class Drawing {
       intervals_ = MapIntervals(parameters.volume.color_map);
       optics_.map = intervals_.data();
     } else if (parameters.volume_surface.face_alpha > 0.0 && !scene.surface.empty()) {
-      layers_ = std::make_unique<SurfaceLayers>(scene, camera, parameters, view_);
-      optics_.layer = layers_->shader();
       optics_.layer_alpha = static_cast<float>(parameters.volume_surface.face_alpha);
     }
   }
@@ -67,6 +65,10 @@ class Drawing {
     vertices_ = project_vertices(scene_.vertices, scene_.center, camera_);
     const auto box = [this](std::size_t cell) { return visible(cell) ? box_of(static_cast<Index>(cell)) : PixelBox{}; };
     bins_ = bin_to_tiles(scene_.tetrahedra.size(), camera_.width, camera_.height, tile_side, box, progress);
+    if (optics_.layer_alpha > 0.0F) {
+      layers_ = std::make_unique<SurfaceLayers>(scene_, camera_, parameters_, view_, vertices_, progress);
+      optics_.layer = layers_->shader();
+    }
   }
 
   Image draw(std::uint64_t& steps, Progress& progress) const {
@@ -76,7 +78,7 @@ class Drawing {
     std::atomic<std::size_t> done{0};
     parallel_for(bins_.tiles(), 1, [&](std::size_t tile, std::size_t) {
       progress.check();
-      if (!bins_.of(tile).empty()) {
+      if (!bins_.of(tile).empty() || (layers_ && layers_->any_in(tile))) {
         std::unique_ptr<Tile> cells = pool.take();
         all_steps += draw_tile(tile, *cells, image, progress);
         pool.give_back(std::move(cells));
@@ -93,7 +95,6 @@ class Drawing {
 
  private:
   bool visible(std::size_t cell) const {
-    if (layers_ && layers_->faces()[cell] != 0) return true;
     if (!(alpha_length_ > 0.0)) return false;
     const Tetrahedron& corners = scene_.tetrahedra[cell];
     if (scene_.mode == Mode::volume_surface) {
@@ -109,22 +110,26 @@ class Drawing {
   }
 
   std::uint64_t draw_tile(std::size_t number, Tile& tile, Image& image, const Progress& progress) const {
-    const auto columns = static_cast<std::size_t>(bins_.columns);
-    const int first_column = static_cast<int>(number % columns) * tile_side;
-    const int first_row = static_cast<int>(number / columns) * tile_side;
+    const auto [first_column, last_column, first_row, last_row] =
+        bins_.pixels_of(number, camera_.width, camera_.height);
     set_up_tile(bins_.of(number), first_column, first_row, tile);
     tile.list_blocks();
+    tile.layers.clear();
+    if (layers_) layers_->find(number, tile.layers);
     const BlockScratch scratch = tile.scratch();
     std::uint64_t steps = 0;
     for (int b = 0; b < blocks_per_side * blocks_per_side; ++b) {
       const std::span<const std::uint32_t> cells = tile.cells_of(b);
-      if (cells.empty()) continue;
+      const bool layered = tile.layers.any_in(b);
+      if (cells.empty() && !layered) continue;
       progress.check();
       BlockInput block{};
       block.planes = tile.planes.data();
       block.values = tile.values.data();
       block.cells = cells.data();
       block.count = cells.size();
+      block.layers = layered ? tile.layers.hits() : nullptr;
+      block.layer_begin = layered ? tile.layers.begin_of(b) : nullptr;
       block.column = b % blocks_per_side * block_side;
       block.row = b / blocks_per_side * block_side;
       block.tile_column = first_column;
@@ -134,7 +139,7 @@ class Drawing {
       for (int i = 0; i < block_pixels; ++i) {
         const int column = first_column + block.column + i % block_side;
         const int row = first_row + block.row + i / block_side;
-        if (column >= image.width || row >= image.height) continue;
+        if (column > last_column || row > last_row) continue;
         image.at(column, row) = {rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2], rgba[4 * i + 3]};
       }
     }
@@ -151,7 +156,6 @@ class Drawing {
     input.value_count = layered ? 4 : 1;
     input.cells = cells.data();
     input.count = cells.size();
-    input.surface_faces = layers_ ? layers_->faces() : nullptr;
     input.column = first_column;
     input.row = first_row;
     kernel_.setup(view_, input, tile.planes.data(), tile.values.data(), tile.keys.data());
@@ -172,14 +176,15 @@ class Drawing {
 
   const Scene& scene_;
   const Camera& camera_;
+  const Parameters& parameters_;
   View view_;
   const Kernel& kernel_;
   double alpha_length_ = 0.0;
   MapIntervals intervals_;
-  std::unique_ptr<SurfaceLayers> layers_;
   CellOptics optics_{};
   ProjectedVertices vertices_;
   TileBins bins_;
+  std::unique_ptr<SurfaceLayers> layers_;  // none where no layer is drawn
 };
 
 }  // namespace

@@ -4,8 +4,9 @@
 // Any set of cells that do not overlap is drawn right, cyclic ones included; where cells overlap, the one whose entry
 // is nearer comes first. Rays pass 6e-5 of a pixel beside the pixel's centre (cell_projection_kernel.h says why): next
 // to an exact picture a pixel is off by that share of its difference to its neighbours, beside the rounding of float.
+// The surface's layers, which are either met or not, are met by the rays of mode surface, 4e-9 of a pixel beside.
 // Memory beyond the scene: 33 bytes a vertex, 4 bytes for each tile of 32×32 pixels that a cell touches, in mode
-// volume_surface 1 byte a cell and 16 bytes a surface triangle, and for each thread what its tile needs.
+// volume_surface as much for each that a surface triangle touches, and for each thread what its tile needs.
 #pragma once
 
 #include "core/camera.h"

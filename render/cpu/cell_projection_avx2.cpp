@@ -10,6 +10,7 @@
 // clang-format off
 #include "render/cpu/cell_projection_setup.inl"
 #include "render/cpu/cell_projection_integrate.inl"
+#include "render/cpu/cell_projection_layers.inl"
 #include "render/cpu/cell_projection_block.inl"
 // clang-format on
 

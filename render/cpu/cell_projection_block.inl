@@ -1,5 +1,5 @@
 // A block of 4×4 pixels: which cells its rays meet, in which order, and what they add up to. Included by the kernels'
-// sources after cell_projection_integrate.inl.
+// sources after cell_projection_layers.inl.
 
 namespace atomesh::ATOMESH_ISA {
 
@@ -60,8 +60,8 @@ class Order {
 };
 
 // Every cell's light on its own, composed ray by ray in the ray's own order: right for any set of cells.
-static void compose_ray_by_ray(const Integrator& integrator, const BlockScratch& scratch, std::uint32_t count,
-                               float* rgba) {
+static void compose_ray_by_ray(const Integrator& integrator, Layers& layers, const BlockScratch& scratch,
+                               std::uint32_t count, float* rgba) {
   for (std::uint32_t n = 0; n < count; ++n) {
     Light light;
     integrator.compose(scratch.record[n], load(scratch.u_in + 16 * n), load(scratch.u_out + 16 * n), scratch.lanes[n],
@@ -84,10 +84,13 @@ static void compose_ray_by_ray(const Integrator& integrator, const BlockScratch&
     }
     float sum[4] = {0.0F, 0.0F, 0.0F, 1.0F};
     for (std::uint32_t i = 0; i < met; ++i) {
+      const std::uint32_t at = 16 * scratch.order[i] + lane;
+      layers.lay_before(scratch.u_in[at], scratch.u_out[at], static_cast<int>(lane), sum);
       const float* light = scratch.light + 64 * scratch.order[i] + lane;
       for (int k = 0; k < 3; ++k) sum[k] += sum[3] * light[16 * k];
       sum[3] *= light[48];
     }
+    layers.lay_rest(static_cast<int>(lane), sum);
     for (int k = 0; k < 3; ++k) rgba[4 * lane + k] = sum[k];
     rgba[4 * lane + 3] = 1.0F - sum[3];
   }
@@ -140,10 +143,11 @@ static std::uint64_t draw_block(const View& view, const CellOptics& optics, cons
   }
 
   const Integrator integrator(view, optics, block, pixels);
+  Layers layers(optics, block);
   std::uint64_t steps = 0;
   if (cyclic) {
     for (std::uint32_t n = 0; n < count; ++n) steps += static_cast<unsigned>(__builtin_popcount(scratch.lanes[n]));
-    compose_ray_by_ray(integrator, scratch, count, rgba);
+    compose_ray_by_ray(integrator, layers, scratch, count, rgba);
     return steps;
   }
   Light light;
@@ -152,10 +156,13 @@ static std::uint64_t draw_block(const View& view, const CellOptics& optics, cons
     const unsigned lanes = scratch.lanes[next];
     if (n + prefetch_ahead < count) prefetch(block.values[scratch.record[scratch.order[n + prefetch_ahead]]]);
     steps += static_cast<unsigned>(__builtin_popcount(lanes));
-    integrator.compose(scratch.record[next], load(scratch.u_in + 16 * next), load(scratch.u_out + 16 * next), lanes,
-                       light);
+    const Lanes u_in = load(scratch.u_in + 16 * next);
+    const Lanes u_out = load(scratch.u_out + 16 * next);
+    layers.lay_before(u_in, u_out, lanes, light);
+    integrator.compose(scratch.record[next], u_in, u_out, lanes, light);
     if (!any(light.through > Lanes(opaque_enough))) break;
   }
+  layers.lay_rest(light);
   alignas(64) float channels[4][lane_count];
   store(channels[0], light.red);
   store(channels[1], light.green);

@@ -1,5 +1,5 @@
-// What the segment of a ray in a cell adds: RGBA linear along it, a scalar through the colour map, samples of either,
-// and the surface's layers. Included by the kernels' sources after cell_projection_setup.inl.
+// What the segment of a ray in a cell adds: RGBA linear along it, a scalar through the colour map, samples of either.
+// Included by the kernels' sources after cell_projection_setup.inl.
 
 namespace atomesh::ATOMESH_ISA {
 
@@ -25,6 +25,14 @@ struct Rgba {
   Lanes channel[4];
 };
 
+static inline void absorb(const Rgba& color, const Lanes& opacity, Light& light) {
+  const Lanes taken = light.through * opacity;
+  light.red = multiply_add(taken, color.channel[0], light.red);
+  light.green = multiply_add(taken, color.channel[1], light.green);
+  light.blue = multiply_add(taken, color.channel[2], light.blue);
+  light.through = light.through - taken;
+}
+
 class Integrator {
  public:
   Integrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
@@ -42,7 +50,6 @@ class Integrator {
   // Lays the segment of one cell behind what is in `light`.
   void compose(std::uint32_t record, const Lanes& u_in, const Lanes& u_out, unsigned lanes, Light& light) const {
     const CellValues& cell = block_.values[record];
-    if (cell.surface_entries != 0) compose_layers(block_.planes[record], cell, u_in, lanes, light);
     const Mask mask = mask_of(lanes);
     const Lanes depth(cell.depth);
     const Lanes z_in = relative_depth(min(u_in, u_out)) - depth;
@@ -103,14 +110,6 @@ class Integrator {
                                   multiply_add(second, far_end.channel[k] - near_end.channel[k], *gathered[k]));
     }
     light.through = light.through - first;
-  }
-
-  static void absorb(const Rgba& color, const Lanes& opacity, Light& light) {
-    const Lanes taken = light.through * opacity;
-    light.red = multiply_add(taken, color.channel[0], light.red);
-    light.green = multiply_add(taken, color.channel[1], light.green);
-    light.blue = multiply_add(taken, color.channel[2], light.blue);
-    light.through = light.through - taken;
   }
 
   // RGBA linear from end to end; `length` is alpha_length times the way.
@@ -211,31 +210,6 @@ class Integrator {
       }
       absorb(color, Lanes(1.0F) - exp_minus(color.channel[3] * step_length), light);
     }
-  }
-
-  // Layers of the surface faces by which rays enter the cell. Shaded one ray at a time: a ray meets few.
-  void compose_layers(const CellPlanes& planes, const CellValues& cell, const Lanes& u_in, unsigned lanes,
-                      Light& light) const {
-    alignas(64) float depth[lane_count];
-    alignas(64) float rgb[3][lane_count] = {};
-    alignas(64) float opacity[lane_count] = {};
-    store(depth, u_in);
-    unsigned open = lanes & bits(u_in > Lanes(view_.nearest));
-    for (int s = 0; s < 3; ++s) {
-      if ((cell.surface_entries >> s & 1) == 0) continue;
-      unsigned hit = open & bits(affine(pixels_, planes.in_a[s], planes.in_b[s], planes.in_c[s]) == u_in);
-      open &= ~hit;
-      for (; hit != 0; hit &= hit - 1) {
-        const int lane = __builtin_ctz(hit);
-        float color[3];
-        optics_.layer.shade(optics_.layer.context, cell.cell, cell.entry_faces[s],
-                            block_.tile_column + block_.column + lane % block_side,
-                            block_.tile_row + block_.row + lane / block_side, static_cast<double>(depth[lane]), color);
-        for (int k = 0; k < 3; ++k) rgb[k][lane] = color[k];
-        opacity[lane] = optics_.layer_alpha;
-      }
-    }
-    absorb({{load(rgb[0]), load(rgb[1]), load(rgb[2]), Lanes(0.0F)}}, load(opacity), light);
   }
 
   const View& view_;

@@ -57,9 +57,6 @@ struct CellValues {
   float depth;                   // z_cell - z_ref
   std::uint16_t first_interval;  // of the colour map, that the cell's scalars touch
   std::uint16_t last_interval;
-  Index cell;                    // index into Scene::tetrahedra
-  std::uint8_t surface_entries;  // bit s: entry s (of in_a …) is a face of the surface
-  std::uint8_t entry_faces[4];   // Scene's number of the face of entry s
 };
 
 // A linear piece of the colour map: colour = first + (s - begin) · slope for begin <= s <= end. RGB, then opacity.
@@ -70,9 +67,16 @@ struct MapInterval {
   float slope[4];
 };
 
-// Colour of the layer where a ray enters through a face of the surface.
+// Where a ray enters the surface.
+struct LayerHit {
+  double depth;  // Å
+  float u;       // its place among the cells: never behind the cell it is the front of
+  Index triangle;
+};
+
+// Colour of the layer that the ray of a pixel (of the picture) hits.
 struct Shader {
-  void (*shade)(const void* context, Index cell, int face, double column, double row, double u, float* rgb);
+  void (*shade)(const void* context, const LayerHit& hit, int column, int row, float* rgb);
   const void* context;
 };
 
@@ -91,9 +95,7 @@ struct SetupInput {
   int value_count;         // 4 or 1
   const Index* cells;      // of the tile
   std::size_t count;
-  const std::uint8_t*
-      surface_faces;  // per tetrahedron, bit f: face f is on the surface; nullptr when no layer is drawn
-  int column, row;    // the tile's first pixel
+  int column, row;  // the tile's first pixel
 };
 
 // Lines of the lists that a block's cells pass through; sized by the driver for the longest list.
@@ -112,8 +114,10 @@ struct BlockInput {
   const CellValues* values;
   const std::uint32_t* cells;  // of the block: indices into planes and values, roughly front to back
   std::size_t count;
-  int column, row;            // the block's first pixel, within the tile
-  int tile_column, tile_row;  // the tile's first pixel
+  const LayerHit* layers;  // of the tile; those of the block's ray i: layer_begin[i] … layer_begin[i + 1] - 1,
+  const std::uint32_t* layer_begin;  // nearest first. nullptr where no ray of the block has one
+  int column, row;                   // the block's first pixel, within the tile
+  int tile_column, tile_row;         // the tile's first pixel
 };
 
 struct Kernel {

@@ -38,23 +38,18 @@ constexpr FaceLists face_lists = make_face_lists();
 // Corners of a cell in ascending order of vertex index.
 struct SortedCorners {
   Index vertex[4];
-  int number[4];  // its place in the tetrahedron
-  bool odd;       // the permutation's parity
+  bool odd;  // the permutation's parity
 };
 
 static inline SortedCorners sort_corners(const Index* corners) {
-  SortedCorners s{{corners[0], corners[1], corners[2], corners[3]}, {0, 1, 2, 3}, false};
+  SortedCorners s{{corners[0], corners[1], corners[2], corners[3]}, false};
   constexpr int network[5][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
   for (const auto& [i, j] : network) {
     const bool swap = s.vertex[j] < s.vertex[i];
     const Index vi = s.vertex[i];
     const Index vj = s.vertex[j];
-    const int ni = s.number[i];
-    const int nj = s.number[j];
     s.vertex[i] = swap ? vj : vi;
     s.vertex[j] = swap ? vi : vj;
-    s.number[i] = swap ? nj : ni;
-    s.number[j] = swap ? ni : nj;
     s.odd ^= swap;
   }
   return s;
@@ -149,18 +144,7 @@ static void setup(const View& view, const SetupInput& input, CellPlanes* planes,
     ATOMESH_STORE4(plane.out_a, outa);
     ATOMESH_STORE4(plane.out_b, outb);
     ATOMESH_STORE4(plane.out_c, outc);
-    const int entry_count = __builtin_popcount(entries);
-    plane.out_count = static_cast<std::uint32_t>(4 - entry_count);
-    value.cell = cell;
-    value.surface_entries = 0;
-    if (input.surface_faces != nullptr && input.surface_faces[cell] != 0) {
-      for (int s = 0; s < entry_count; ++s) {
-        const int face = corners.number[in[s]];
-        value.entry_faces[s] = static_cast<std::uint8_t>(face);
-        const unsigned on_surface = (static_cast<unsigned>(input.surface_faces[cell]) >> face) & 1U;
-        value.surface_entries = static_cast<std::uint8_t>(value.surface_entries | (on_surface << s));
-      }
-    }
+    plane.out_count = static_cast<std::uint32_t>(4 - __builtin_popcount(entries));
 
     // Gradients of the barycentric coordinates: ±N / 6V. A cell too flat to have them gets the mean of its corners.
     const double mx = 0.25 * ATOMESH_SUM(x);

@@ -1,4 +1,5 @@
-// The cells of one tile: their records, in order, and listed under the tile's blocks.
+// The cells of one tile: their records, in order, and listed under the tile's blocks; and its rays' hits of the
+// surface.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "render/cpu/cell_projection_kernel.h"
-#include "render/cpu/tile_bins.h"
+#include "render/cpu/surface_layers.h"
 
 namespace atomesh::cell_projection {
 
@@ -27,6 +28,7 @@ class Tile {
   std::vector<CellValues> values;
   std::vector<double> keys;
   std::vector<BlockRange> ranges;
+  TileLayers layers;
 
   // Puts the cells in ascending order of their keys, equal keys by their place in the tile; infinite keys are left out.
   // Then lists them, in this order, under the blocks of their ranges.

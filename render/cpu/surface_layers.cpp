@@ -1,30 +1,99 @@
 #include "render/cpu/surface_layers.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "render/cpu/triangle_raster.h"
 
 namespace atomesh::cell_projection {
 
-SurfaceLayers::SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view)
-    : view_(view), shader_(scene, camera, parameters), faces_(scene.tetrahedra.size(), 0) {
-  triangles_.reserve(scene.surface.size());
-  for (std::size_t t = 0; t < scene.surface.size(); ++t) {
-    const Index cell = scene.surface_tetrahedron[t];
-    const unsigned face = scene.surface_face[t];
-    faces_[cell] = static_cast<std::uint8_t>(faces_[cell] | (1U << face));
-    triangles_.push_back({key(cell, face), static_cast<Index>(t)});
+namespace {
+
+// Whether the triangle turns its inner side to every ray, by far more than rounding: the determinant is the sum of what
+// the raster finds on the sides of its edges times the corners' depths, and wrong by some 1e-15 of the corners'
+// distances.
+bool turned_away(const ProjectedVertices& vertices, const Triangle& corners, bool perspective) {
+  std::array<Vec3, 3> p{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t v = corners[k];
+    if (vertices.behind[v] != 0) return false;
+    p[k] = Vec3(vertices.camera[3 * v], vertices.camera[3 * v + 1], perspective ? vertices.camera[3 * v + 2] : 1.0);
   }
-  // extract_surface() leaves them in this order.
-  if (!std::is_sorted(triangles_.begin(), triangles_.end())) std::sort(triangles_.begin(), triangles_.end());
+  const double size = glm::dot(p[0], p[0]) + glm::dot(p[1], p[1]) + glm::dot(p[2], p[2]);
+  return glm::dot(p[0], glm::cross(p[1], p[2])) < -1e-12 * size * std::sqrt(size);
 }
 
-void SurfaceLayers::shade(const void* layers, Index cell, int face, double column, double row, double u, float* rgb) {
+}  // namespace
+
+void TileLayers::clear() {
+  added_.clear();
+  hits_.clear();
+  begin_.fill(0);
+}
+
+void TileLayers::add(int column, int row, const LayerHit& hit) {
+  const int block = row / block_side * blocks_per_side + column / block_side;
+  const int lane = row % block_side * block_side + column % block_side;
+  const auto ray = static_cast<std::uint32_t>(block * block_pixels + lane);
+  added_.push_back({hit, ray});
+  ++begin_[ray];
+}
+
+void TileLayers::sort() {
+  hits_.resize(added_.size());
+  std::uint32_t place = 0;
+  for (std::uint32_t& at : begin_) place += std::exchange(at, place);
+  auto end = begin_;  // of what is under each ray so far
+  for (const Added& added : added_) {
+    std::uint32_t at = end[added.ray]++;
+    for (; at > begin_[added.ray] && hits_[at - 1].depth > added.hit.depth; --at) hits_[at] = hits_[at - 1];
+    hits_[at] = added.hit;
+  }
+}
+
+SurfaceLayers::SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view,
+                             const ProjectedVertices& vertices, const Progress& progress)
+    : scene_(scene),
+      camera_(camera),
+      view_(view),
+      vertices_(vertices),
+      shader_(scene, camera, parameters),
+      margin_(0x1p-20 * scene.bounds.diagonal()) {
+  const bool perspective = camera.projection == Projection::perspective;
+  const auto box = [&](std::size_t t) {
+    const Triangle& corners = scene.surface[t];
+    if (turned_away(vertices, corners, perspective)) return PixelBox{};
+    return pixel_box(vertices, corners, camera.width, camera.height);
+  };
+  bins_ = bin_to_tiles(scene.surface.size(), camera.width, camera.height, tile_side, box, progress);
+}
+
+void SurfaceLayers::find(std::size_t tile, TileLayers& layers) const {
+  layers.clear();
+  const PixelBox pixels = bins_.pixels_of(tile, camera_.width, camera_.height);
+  cross_triangles(scene_.surface, camera_, vertices_, bins_.of(tile), pixels,
+                  [&](int column, int row, Index triangle, const TriangleRaster& raster, const Crossing& crossing) {
+                    if (!crossing.entering) return;
+                    const double beside =
+                        raster.plane_depth(view_.left + view_.pixel * column, view_.top - view_.pixel * row);
+                    layers.add(column - pixels.first_column, row - pixels.first_row,
+                               {crossing.depth, place(crossing.depth, beside), triangle});
+                  });
+  layers.sort();
+}
+
+float SurfaceLayers::place(double depth, double beside) const {
+  const double nearer = (beside < depth ? beside : depth) - margin_;
+  const double before = std::max(nearer, 0.5 * depth);
+  return static_cast<float>(view_.perspective ? 1.0 - view_.reference / before : before - view_.reference);
+}
+
+void SurfaceLayers::shade(const void* layers, const LayerHit& hit, int column, int row, float* rgb) {
   const SurfaceLayers& self = *static_cast<const SurfaceLayers*>(layers);
-  const View& view = self.view_;
-  const auto found = std::lower_bound(self.triangles_.begin(), self.triangles_.end(),
-                                      std::pair<std::uint64_t, Index>{key(cell, static_cast<unsigned>(face)), 0});
-  const double depth = view.perspective ? view.reference / (1.0 - u) : u + view.reference;
-  const Vec3f color =
-      self.shader_.shade(found->second, view.left + column * view.pixel, view.top - row * view.pixel, depth, false);
+  const Camera& camera = self.camera_;
+  const Vec3f color = self.shader_.shade(hit.triangle, camera.x_of(column), camera.y_of(row), hit.depth, false);
   for (int k = 0; k < 3; ++k) rgb[k] = color[k];
 }
 

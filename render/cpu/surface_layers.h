@@ -1,33 +1,66 @@
-// The lit layers of mode volume_surface: which faces of which cells are on the surface, and their colour where a ray
-// enters by them.
+// The lit layers of mode volume_surface: where rays enter the surface, and its colour there. Found from the surface
+// alone by its watertight raster, as in mode surface, so that every entry counts exactly once, however rounding shares
+// out the volume behind an edge among its cells.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/cpu/surface_shader.h"
+#include "render/cpu/tile_bins.h"
 
 namespace atomesh::cell_projection {
 
+// The hits of one tile's rays; lent to a thread with the tile's cells.
+class TileLayers {
+ public:
+  void clear();
+  // Triangles ascending. Pixel within the tile.
+  void add(int column, int row, const LayerHit& hit);
+  // Puts what was added under its rays, nearest first; of two at the same depth the triangle added first.
+  void sort();
+
+  const LayerHit* hits() const { return hits_.data(); }
+  // Of a block's rays: those of ray i are hits()[begin[i]] … hits()[begin[i + 1] - 1].
+  const std::uint32_t* begin_of(int block) const { return &begin_[static_cast<std::size_t>(block * block_pixels)]; }
+  bool any_in(int block) const { return begin_of(block)[0] != begin_of(block)[block_pixels]; }
+
+ private:
+  struct Added {
+    LayerHit hit;
+    std::uint32_t ray;  // block by block
+  };
+  std::vector<Added> added_;
+  std::vector<LayerHit> hits_;
+  std::array<std::uint32_t, tile_side * tile_side + 1> begin_{};
+};
+
 class SurfaceLayers {
  public:
-  // Keeps references.
-  SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view);
+  // Keeps references. Throws CancelledError.
+  SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view,
+                const ProjectedVertices& vertices, const Progress& progress);
 
-  // Per tetrahedron, bit f set where face f is on the surface.
-  const std::uint8_t* faces() const { return faces_.data(); }
+  bool any_in(std::size_t tile) const { return !bins_.of(tile).empty(); }
+  // The hits in front of the eye.
+  void find(std::size_t tile, TileLayers& layers) const;
   Shader shader() const { return {shade, this}; }
 
  private:
-  static void shade(const void* layers, Index cell, int face, double column, double row, double u, float* rgb);
-  static std::uint64_t key(Index cell, unsigned face) { return std::uint64_t{cell} * 4 + face; }
+  // The u of a layer at `depth`, so that no cell behind it seems to begin before it: it goes by where the cells' ray,
+  // which passes a hair beside, meets the triangle's plane, and by more nearer than floats can be off.
+  float place(double depth, double beside) const;
+  static void shade(const void* layers, const LayerHit& hit, int column, int row, float* rgb);
 
+  const Scene& scene_;
+  const Camera& camera_;
   const View& view_;
+  const ProjectedVertices& vertices_;
   SurfaceShader shader_;
-  std::vector<std::uint8_t> faces_;
-  std::vector<std::pair<std::uint64_t, Index>> triangles_;  // key of cell and face, triangle; ascending
+  double margin_;  // Å
+  TileBins bins_;  // of the surface's triangles, without those that surely no ray enters by
 };
 
 }  // namespace atomesh::cell_projection

@@ -22,37 +22,18 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// A tile's pixels: columns [first_column, end_column), rows alike.
-struct Tile {
-  int first_column;
-  int end_column;
-  int first_row;
-  int end_row;
-  std::size_t at(int column, int row) const {
-    return static_cast<std::size_t>((row - first_row) * tile_side + (column - first_column));
-  }
-};
+std::size_t in_tile(const PixelBox& tile, int column, int row) {
+  return static_cast<std::size_t>((row - tile.first_row) * tile_side + (column - tile.first_column));
+}
 
 // Calls cross(pixel of the tile, triangle, crossing) for every crossing in the tile, triangles ascending.
 template <class Cross>
 void raster_tile(const Scene& scene, const Camera& camera, const ProjectedVertices& vertices,
-                 std::span<const Index> triangles, const Tile& tile, Cross&& cross) {
-  const bool perspective = camera.projection == Projection::perspective;
-  for (const Index triangle : triangles) {
-    const Triangle& corners = scene.surface[triangle];
-    const PixelBox box = pixel_box(vertices, corners, camera.width, camera.height);
-    const TriangleRaster raster(vertices, corners, perspective);
-    const int end_column = std::min(tile.end_column, box.last_column + 1);
-    const int end_row = std::min(tile.end_row, box.last_row + 1);
-    for (int row = std::max(tile.first_row, box.first_row); row < end_row; ++row) {
-      const TriangleRaster::Row sides = raster.row(camera.y_of(row - surface_ray_shift * surface_ray_lift));
-      for (int column = std::max(tile.first_column, box.first_column); column < end_column; ++column) {
-        Crossing crossing{};
-        if (raster.crosses(sides, camera.x_of(column + surface_ray_shift), crossing))
-          cross(tile.at(column, row), triangle, crossing);
-      }
-    }
-  }
+                 std::span<const Index> triangles, const PixelBox& tile, Cross&& cross) {
+  cross_triangles(scene.surface, camera, vertices, triangles, tile,
+                  [&](int column, int row, Index triangle, const TriangleRaster&, const Crossing& crossing) {
+                    cross(in_tile(tile, column, row), triangle, crossing);
+                  });
 }
 
 // Bins the surface and calls draw(tile, its triangles) for every tile, in parallel. draw() returns its crossings.
@@ -68,9 +49,7 @@ void for_tiles(const Scene& scene, const Camera& camera, RenderStats& stats, Pro
   std::atomic<std::size_t> done{0};
   parallel_for(bins.tiles(), 1, [&](std::size_t t, std::size_t) {
     progress.check();
-    const int column = static_cast<int>(t % static_cast<std::size_t>(bins.columns)) * tile_side;
-    const int row = static_cast<int>(t / static_cast<std::size_t>(bins.columns)) * tile_side;
-    const Tile tile{column, std::min(column + tile_side, camera.width), row, std::min(row + tile_side, camera.height)};
+    const PixelBox tile = bins.pixels_of(t, camera.width, camera.height);
     if (!bins.of(t).empty()) steps += draw(vertices, tile, bins.of(t));
     const std::size_t finished = ++done;
     // The listener belongs to the thread that called us.
@@ -86,9 +65,11 @@ std::size_t pixel_index(const Camera& camera, int column, int row) {
 }
 
 template <class Visit>
-void for_pixels(const Tile& tile, Visit&& visit) {
-  for (int row = tile.first_row; row < tile.end_row; ++row) {
-    for (int column = tile.first_column; column < tile.end_column; ++column) visit(column, row, tile.at(column, row));
+void for_pixels(const PixelBox& tile, Visit&& visit) {
+  for (int row = tile.first_row; row <= tile.last_row; ++row) {
+    for (int column = tile.first_column; column <= tile.last_column; ++column) {
+      visit(column, row, in_tile(tile, column, row));
+    }
   }
 }
 
@@ -101,7 +82,7 @@ Image draw_surface(const Scene& scene, const Camera& camera, const Parameters& p
   if (channels.id != nullptr) channels.id->assign(image.pixels.size(), no_index);
   const SurfaceShader shader(scene, camera, parameters);
   for_tiles(scene, camera, stats, progress,
-            [&](const ProjectedVertices& vertices, const Tile& tile, std::span<const Index> triangles) {
+            [&](const ProjectedVertices& vertices, const PixelBox& tile, std::span<const Index> triangles) {
               struct Hit {
                 double depth = std::numeric_limits<double>::infinity();
                 Index triangle = no_index;
@@ -138,7 +119,7 @@ Image draw_xray(const Scene& scene, const Camera& camera, const Parameters& para
   const double alpha_length = parameters.xray.alpha_length;
   for_tiles(
       scene, camera, stats, progress,
-      [&](const ProjectedVertices& vertices, const Tile& tile, std::span<const Index> triangles) {
+      [&](const ProjectedVertices& vertices, const PixelBox& tile, std::span<const Index> triangles) {
         std::array<double, tile_pixels> inside{};  // depth at exits minus depth at entries
         std::uint64_t crossings = 0;
         raster_tile(scene, camera, vertices, triangles, tile, [&](std::size_t at, Index, const Crossing& crossing) {

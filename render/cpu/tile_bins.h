@@ -34,6 +34,12 @@ struct TileBins {
   std::span<const Index> of(std::size_t tile) const {
     return {items.data() + begin[tile], items.data() + begin[tile + 1]};
   }
+  // The tile's pixels, cut off at the picture's right and lower edge.
+  PixelBox pixels_of(std::size_t tile, int width, int height) const {
+    const int column = static_cast<int>(tile % static_cast<std::size_t>(columns)) * side;
+    const int row = static_cast<int>(tile / static_cast<std::size_t>(columns)) * side;
+    return {column, std::min(column + side, width) - 1, row, std::min(row + side, height) - 1};
+  }
 };
 
 // `box(i)` is the box of primitive i, clipped to the picture; it is asked twice, in parallel. Throws CancelledError.

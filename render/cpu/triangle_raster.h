@@ -2,7 +2,9 @@
 // leaves, whatever it meets on the way (vertices, edges, triangles seen edge-on or reaching behind the eye).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <span>
 
 #include "core/camera.h"
 #include "core/geometry.h"
@@ -50,6 +52,19 @@ class TriangleRaster {
     crossing.entering = left == 3;
     return crossing.depth > 0.0;
   }
+  // Depth at which the ray meets the triangle's plane, inside the triangle or beside it, kept between the corners'
+  // depths; NaN where it runs in the plane.
+  double plane_depth(double x, double y) const {
+    double sum = 0.0;
+    double depth = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double side = edges_[k].x * x + edges_[k].y * y + edges_[k].constant;
+      sum += side;
+      depth += side * depths_[k];
+    }
+    const auto [nearest, farthest] = std::minmax({depths_[0], depths_[1], depths_[2]});
+    return std::clamp(depth / sum, nearest, farthest);
+  }
 
  private:
   struct Edge {
@@ -59,5 +74,28 @@ class TriangleRaster {
   std::array<Edge, 3> edges_;  // opposite corner 0, 1, 2
   std::array<double, 3> depths_;
 };
+
+// Calls cross(column, row, triangle, its raster, crossing) for every crossing of a pixel's ray with one of the
+// triangles (indices into the surface), triangle by triangle.
+template <class Cross>
+void cross_triangles(std::span<const Triangle> surface, const Camera& camera, const ProjectedVertices& vertices,
+                     std::span<const Index> triangles, const PixelBox& pixels, Cross&& cross) {
+  const bool perspective = camera.projection == Projection::perspective;
+  for (const Index triangle : triangles) {
+    const Triangle& corners = surface[triangle];
+    const PixelBox box = pixel_box(vertices, corners, camera.width, camera.height);
+    const TriangleRaster raster(vertices, corners, perspective);
+    const int last_column = std::min(pixels.last_column, box.last_column);
+    const int last_row = std::min(pixels.last_row, box.last_row);
+    for (int row = std::max(pixels.first_row, box.first_row); row <= last_row; ++row) {
+      const TriangleRaster::Row sides = raster.row(camera.y_of(row - surface_ray_shift * surface_ray_lift));
+      for (int column = std::max(pixels.first_column, box.first_column); column <= last_column; ++column) {
+        Crossing crossing{};
+        if (raster.crosses(sides, camera.x_of(column + surface_ray_shift), crossing))
+          cross(column, row, triangle, raster, crossing);
+      }
+    }
+  }
+}
 
 }  // namespace atomesh

@@ -1,0 +1,83 @@
+// The surface's layers among a block's cells. Included by the kernels' sources after cell_projection_integrate.inl.
+
+namespace atomesh::ATOMESH_ISA {
+
+// Each ray's layers yet to come, nearest first.
+//
+// A layer comes before the cells whose segment's middle is farther. Being the front of the sample it never truly lies
+// inside a segment; but depths are rounded, most where faces are steep.
+class Layers {
+ public:
+  Layers(const CellOptics& optics, const BlockInput& block) : optics_(optics), block_(block) {
+    for (int lane = 0; lane < lane_count; ++lane) {
+      if (block.layers != nullptr) at_[lane] = block.layer_begin[lane];
+      find_next(lane);
+    }
+  }
+
+  // Lays those that come before the cell behind what is in `light`.
+  void lay_before(const Lanes& u_in, const Lanes& u_out, unsigned lanes, Light& light) {
+    if (block_.layers != nullptr) lay_up_to(u_in + u_out, lanes, light);
+  }
+  void lay_rest(Light& light) {
+    if (block_.layers != nullptr) lay_up_to(Lanes(none), (1U << lane_count) - 1, light);
+  }
+
+  // The same on one ray; light as premultiplied RGB and what still gets through.
+  void lay_before(float u_in, float u_out, int lane, float* light) { lay_up_to(u_in + u_out, lane, light); }
+  void lay_rest(int lane, float* light) { lay_up_to(none, lane, light); }
+
+ private:
+  static constexpr float none = 3e38F;
+
+  void lay_up_to(const Lanes& twice_u, unsigned lanes, Light& light) {
+    if ((lanes & bits(load(next_) < twice_u)) != 0) lay_due(twice_u, lanes, light);
+  }
+
+  // Shaded one ray at a time: a ray has few.
+  __attribute__((noinline)) void lay_due(const Lanes& twice_u, unsigned lanes, Light& light) {
+    const unsigned open = lanes & bits(light.through > Lanes(opaque_enough));
+    while (const unsigned due = open & bits(load(next_) < twice_u)) {
+      alignas(64) float rgb[3][lane_count] = {};
+      alignas(64) float opacity[lane_count] = {};
+      for (unsigned rest = due; rest != 0; rest &= rest - 1) {
+        const int lane = __builtin_ctz(rest);
+        float color[3];
+        take(lane, color);
+        for (int k = 0; k < 3; ++k) rgb[k][lane] = color[k];
+        opacity[lane] = optics_.layer_alpha;
+      }
+      absorb({{load(rgb[0]), load(rgb[1]), load(rgb[2]), Lanes(0.0F)}}, load(opacity), light);
+    }
+  }
+
+  void lay_up_to(float twice_u, int lane, float* light) {
+    while (next_[lane] < twice_u) {
+      float color[3];
+      take(lane, color);
+      const float taken = light[3] * optics_.layer_alpha;
+      for (int k = 0; k < 3; ++k) light[k] += taken * color[k];
+      light[3] -= taken;
+    }
+  }
+
+  // The colour of the next one, which is then no longer to come.
+  void take(int lane, float* color) {
+    optics_.layer.shade(optics_.layer.context, block_.layers[at_[lane]++],
+                        block_.tile_column + block_.column + lane % block_side,
+                        block_.tile_row + block_.row + lane / block_side, color);
+    find_next(lane);
+  }
+
+  void find_next(int lane) {
+    const bool more = block_.layers != nullptr && at_[lane] < block_.layer_begin[lane + 1];
+    next_[lane] = more ? 2.0F * block_.layers[at_[lane]].u : none;
+  }
+
+  const CellOptics& optics_;
+  const BlockInput& block_;
+  std::uint32_t at_[lane_count];         // the next one of each ray
+  alignas(64) float next_[lane_count];  // twice its u
+};
+
+}  // namespace atomesh::ATOMESH_ISA
