@@ -192,7 +192,8 @@ void add_volume(Table& t) {
   t.real("volume.vacancy_multiplier", "Vacancy defect multiplier", "", 0, 1e6,
          "Weight of vacancy defects in an atom's scalar.", of(&P::vacancy_multiplier));
   t.add("volume.color_map", ParameterType::color_map, "Color map", "", 0, 1,
-        "Color and opacity coefficient of the normalized scalar: a preset, or 2 to 32 entries scalar:color.",
+        "Color and opacity coefficient of the normalized scalar: a preset, or 2 to 32 entries scalar:color with blanks "
+        "between them.",
         of(&P::color_map));
 }
 

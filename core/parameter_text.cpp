@@ -178,8 +178,9 @@ ColorMap read_color_map(std::string_view text) {
     const auto scalar = colon == std::string_view::npos ? std::nullopt : read_real(part.substr(0, colon));
     const auto color = colon == std::string_view::npos ? std::nullopt : read_rgba(part.substr(colon + 1));
     if (!scalar || !color) {
-      throw UsageError("color map entry " + std::to_string(map.entries.size() + 1) + " \"" + std::string(part) +
-                       "\": expected SCALAR:COLOR, as in 0.5:#ff8800cc or 0.5:1,0.5,0,0.8");
+      throw UsageError(
+          "color map entry " + std::to_string(map.entries.size() + 1) + " \"" + std::string(part) +
+          "\": expected SCALAR:COLOR, as in 0.5:#ff8800cc or 0.5:1,0.5,0,0.8, and blanks between the entries");
     }
     map.entries.push_back({*scalar, *color});
   }

@@ -53,9 +53,10 @@ Command add_bench(CLI::App& app) {
                  "seed-table: preprocessing and the five modes on the ten samples, beside the seed's table 5.1")
       ->required();
   app.add_option("--sample", seed_table.samples, "Only these samples; see atomesh sample --list")->type_name("NAME…");
-  app.add_option("--atoms", seed_table.atoms, "Atoms of each sample; 0: as many as the seed had")
-      ->type_name("N")
-      ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--atoms", [&seed_table](const std::string& text) { seed_table.atoms = parse_count("--atoms", text); },
+         "Atoms of each sample; 0: as many as the seed had [0]")
+      ->type_name("N");
   app.add_option_function<std::string>(
          "--size",
          [&seed_table](const std::string& text) { std::tie(seed_table.width, seed_table.height) = parse_size(text); },

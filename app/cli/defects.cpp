@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "app/cli/commands.h"
 #include "app/cli/load_material.h"
@@ -9,6 +10,7 @@
 #include "app/cli/pipeline_options.h"
 #include "app/cli/session.h"
 #include "app/cli/text_table.h"
+#include "app/cli/text_values.h"
 #include "core/error.h"
 #include "core/text_file.h"
 #include "preprocess/cluster_defects.h"
@@ -22,6 +24,7 @@ struct DefectsArguments {
   std::string kind;
   std::size_t top = 0;
   double distance = 0.0;
+  bool sites = false;
   PipelineOptions options;
 };
 
@@ -52,6 +55,31 @@ TextTable cluster_table(const std::vector<DefectCluster>& clusters) {
                fmt::format("{:.3f}", cluster.radius), std::to_string(cluster.atoms.size()),
                std::to_string(cluster.vacancies.size()), std::to_string(cluster.extras.size()),
                fmt::format("{:.4g}", cluster.peak)});
+  }
+  return table;
+}
+
+// The vacant sites, then the extra atoms; one of the two with `kind`.
+TextTable site_table(const Material& material, std::optional<DefectKind> kind, std::size_t top) {
+  TextTable table({"kind", "species", "x", "y", "z", "atom", "votes"});
+  const Defects& defects = material.defects;
+  std::size_t rows = 0;
+  const auto row = [&](std::string_view what, const std::string& species, const Vec3& position, std::string atom,
+                       auto votes) {
+    if (top > 0 && rows++ >= top) return;
+    table.row({std::string(what), species, fmt::format("{:.3f}", position.x), fmt::format("{:.3f}", position.y),
+               fmt::format("{:.3f}", position.z), std::move(atom), fmt::format("{}", votes)});
+  };
+  if (kind.value_or(DefectKind::vacancy) == DefectKind::vacancy) {
+    for (const VacancySite& site : defects.vacancies) {
+      row("vacancy", material.atoms.species_table[site.species].name, site.position, "", site.votes);
+    }
+  }
+  if (kind.value_or(DefectKind::extra) == DefectKind::extra) {
+    for (const ExtraAtom& extra : defects.extras) {
+      row("extra", std::string(material.atoms.species_name(extra.atom)), material.atoms.positions[extra.atom],
+          std::to_string(extra.atom), extra.votes);
+    }
   }
   return table;
 }
@@ -93,7 +121,13 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
   const bool one_kind = !arguments.kind.empty();
   const DefectKind kind = one_kind ? defect_kind_from_name(arguments.kind) : DefectKind::mixed;
   const bool csv_to_stdout = arguments.csv == "-";
+  if (csv_to_stdout && session.json_on_standard_output()) {
+    throw UsageError("defects: --csv - and --json - cannot both have standard output; give one of them a file");
+  }
   if (!arguments.csv.empty() && !csv_to_stdout) check_output(arguments.csv, {".csv"});
+  if (arguments.sites && one_kind && kind != DefectKind::vacancy && kind != DefectKind::extra) {
+    throw UsageError("defects: --sites lists vacancies and extra atoms; --kind " + arguments.kind + " has no sites");
+  }
 
   const LoadedMaterial loaded =
       load_material(arguments.input, {.atoms = true, .tetrahedra = false, .surface = false, .defects = true}, app,
@@ -112,7 +146,9 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
   const std::size_t found = clusters.size();
   if (arguments.top > 0 && found > arguments.top) clusters.resize(arguments.top);
 
-  const TextTable table = cluster_table(clusters);
+  const TextTable table = arguments.sites
+                              ? site_table(material, one_kind ? std::optional(kind) : std::nullopt, arguments.top)
+                              : cluster_table(clusters);
   if (csv_to_stdout) {
     session.print_text(table.csv());
   } else {
@@ -122,7 +158,7 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
                   grouped(material.defects.extras.size()), grouped(positional.atoms), positional.max, positional.mean);
     session.print("{} clusters{}{}; lengths in Å", grouped(found), one_kind ? " of kind " + arguments.kind : "",
                   clusters.size() < found ? fmt::format(", the {} largest:", clusters.size()) : "");
-    if (!clusters.empty()) session.print_text(table.text());
+    if (!table.empty()) session.print_text(table.text());
   }
   if (!arguments.csv.empty() && !csv_to_stdout) {
     AtomicFile file(arguments.csv);
@@ -138,18 +174,24 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
 Command add_defects(CLI::App& app) {
   auto arguments = std::make_shared<DefectsArguments>();
   app.add_option("FILE", arguments->input, "A .crb or .crt, or an atoms file to preprocess on the way")->required();
-  app.add_option("--csv", arguments->csv, "Write the clusters as CSV to FILE, or to standard output for -")
+  app.add_flag(
+      "--sites", arguments->sites,
+      "List each vacant site and each extra atom instead of the clusters; --kind vacancy or extra: one of them");
+  app.add_option("--csv", arguments->csv, "Write the list as CSV to FILE, or to standard output for -")
       ->type_name("FILE|-");
   app.add_option("--kind", arguments->kind, "Only clusters of this kind: vacancy, extra, positional or mixed")
       ->type_name("KIND");
-  app.add_option("--top", arguments->top, "Only the N largest clusters; 0: all")->type_name("N")->capture_default_str();
+  app.add_option_function<std::string>(
+         "--top", [arguments](const std::string& text) { arguments->top = parse_count("--top", text); },
+         "Only the N largest clusters, or the first N sites; 0: all [0]")
+      ->type_name("N");
   app.add_option("--join", arguments->distance,
                  "Defective atoms nearer than this (Å) belong to one cluster; 0: 1.3 nearest-neighbour distances")
       ->type_name("LENGTH")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_pipeline_options(app, arguments->options);
-  app.footer("Example:\n  atomesh defects diamond.crb --kind vacancy --top 20 --csv vacancies.csv\n");
+  app.footer("Example:\n  atomesh defects diamond.crb --kind vacancy --sites --csv vacancies.csv\n");
   return [arguments, &app](Session& session) { return run_defects(*arguments, app, session); };
 }
 

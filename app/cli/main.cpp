@@ -114,7 +114,9 @@ int run(int argc, char** argv) {
   for (const auto& [words, command] : commands) {
     if (!words->parsed()) continue;
     session.begin();
-    return command(session);
+    const int exit_code = command(session);
+    session.finish();
+    return exit_code;
   }
   return fail("this version has no window yet; the subcommands work without one: " +
                   CLI::detail::join(subcommand_names(), ", ") + "\nTry: atomesh --help",

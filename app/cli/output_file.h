@@ -11,4 +11,7 @@ namespace atomesh::cli {
 // not exist.
 void check_output(const std::string& path, const std::vector<std::string_view>& extensions);
 
+// Only the folder: for a file that may be called anything.
+void check_output_folder(const std::string& path);
+
 }  // namespace atomesh::cli

@@ -88,6 +88,16 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   if (arguments.input.empty()) throw UsageError("render: expected FILE, a .crb, .crt or atoms file");
   if (arguments.output.empty()) throw UsageError("render: expected -o IMG.png");
   check_output(arguments.output, {".png"});
+  if (!arguments.reference.empty()) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(arguments.reference, arguments.output, ignored)) {
+      throw UsageError("--reference " + arguments.reference +
+                       ": is the picture that -o writes; they would always agree");
+    }
+    if (!std::filesystem::exists(arguments.reference)) {
+      throw InputError(arguments.reference, 0, "does not exist; expected the picture to compare with");
+    }
+  }
   const auto [width, height] = parse_size(arguments.size);
   const Parameters parameters = chosen_parameters(arguments);
   const Renderer& renderer = find_renderer(arguments.renderer);

@@ -9,6 +9,7 @@
 #include "app/cli/session.h"
 #include "app/cli/species_count.h"
 #include "app/cli/text_table.h"
+#include "app/cli/text_values.h"
 #include "core/error.h"
 #include "core/text_file.h"
 #include "preprocess/write_atoms.h"
@@ -79,6 +80,7 @@ int run_sample(const SampleArguments& arguments, Session& session) {
   if (arguments.name.empty()) throw UsageError("sample: which one? atomesh sample --list names them");
   if (arguments.output.empty()) throw UsageError("sample: expected -o FILE (.dat or .xyz)");
   check_output(arguments.output, {".dat", ".xyz"});
+  if (!arguments.truth.empty()) check_output_folder(arguments.truth);
 
   const auto start = std::chrono::steady_clock::now();
   const Sample sample = make_sample(arguments.name, arguments.options, session.progress());
@@ -114,13 +116,14 @@ Command add_sample(CLI::App& app) {
   auto arguments = std::make_shared<SampleArguments>();
   app.add_option("NAME", arguments->name, "The sample to grow; see --list");
   app.add_option("-o,--output", arguments->output, "The atoms file to write, .dat or .xyz")->type_name("FILE");
-  app.add_option("--atoms", arguments->options.atoms,
-                 "Atoms aimed at, as nearly as the lattice allows; 0: as many as the published data set has")
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_option("--seed", arguments->options.seed, "Seed of every random choice")
-      ->type_name("S")
-      ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--atoms", [arguments](const std::string& text) { arguments->options.atoms = parse_count("--atoms", text); },
+         "Atoms aimed at, as nearly as the lattice allows; 0: as many as the published data set has [0]")
+      ->type_name("N");
+  app.add_option_function<std::string>(
+         "--seed", [arguments](const std::string& text) { arguments->options.seed = parse_count("--seed", text); },
+         "Seed of every random choice [1]")
+      ->type_name("S");
   app.add_option("--truth", arguments->truth, "Also write what was planted, and where, as JSON")->type_name("FILE");
   app.add_flag("--list", arguments->list, "List the samples and exit");
   app.footer("Example:\n  atomesh sample diamond-vacancy --atoms 20000 -o diamond.dat --truth diamond.json\n");

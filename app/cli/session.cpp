@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "app/cli/output_file.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/text_file.h"
 
@@ -34,6 +36,7 @@ void Session::add_options(CLI::App& app) {
 }
 
 void Session::begin() {
+  if (json_wanted() && !json_on_standard_output()) check_output_folder(json_path_);
   set_threads(threads_);
   cancelled_by_signal.store(&progress_);
   // The first signal asks the work to stop and clean up; the second has its usual effect.
@@ -44,8 +47,14 @@ void Session::begin() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+void Session::finish() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw Error("standard output: cannot be written: is the disk full?");
+  }
+}
+
 void Session::print_text(std::string_view text) {
-  if (json_path_ == "-") return;
+  if (json_on_standard_output()) return;
   bar_.clear();
   std::fwrite(text.data(), 1, text.size(), stdout);
   if (text.empty() || text.back() != '\n') std::fputc('\n', stdout);
@@ -60,7 +69,7 @@ void Session::write_json(const Json& json) {
   if (json_path_.empty()) return;
   bar_.clear();
   const std::string text = json.text();
-  if (json_path_ == "-") {
+  if (json_on_standard_output()) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return;
   }

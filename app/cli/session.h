@@ -22,8 +22,11 @@ class Session {
 
   // Adds --threads and --json to a subcommand.
   void add_options(CLI::App& app);
-  // After the command line was read: applies --threads and lets SIGINT and SIGTERM cancel progress().
+  // After the command line was read: applies --threads, lets SIGINT and SIGTERM cancel progress(), and throws
+  // UsageError when --json names a folder that does not exist.
   void begin();
+  // After the work: throws Error when something printed did not arrive (a full disk behind standard output).
+  void finish();
 
   Progress& progress() { return progress_; }
 
@@ -38,6 +41,7 @@ class Session {
   // To where --json says; nothing without it. A file appears whole or not at all.
   void write_json(const Json& json);
   bool json_wanted() const { return !json_path_.empty(); }
+  bool json_on_standard_output() const { return json_path_ == "-"; }
   // Takes the progress bar off the terminal.
   void clear_progress() { bar_.clear(); }
 

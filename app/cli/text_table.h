@@ -11,6 +11,7 @@ class TextTable {
  public:
   explicit TextTable(std::vector<std::string> headings) : headings_(std::move(headings)) {}
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  bool empty() const { return rows_.empty(); }
 
   // Columns padded to their widest cell, numbers to the right, two blanks between.
   std::string text() const;

@@ -18,6 +18,14 @@ std::pair<int, int> parse_size(const std::string& text) {
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
+std::uint64_t parse_count(std::string_view option, const std::string& text) {
+  std::int64_t value = 0;
+  if (!parse_integer(text, value) || value < 0) {
+    throw UsageError(std::string(option) + ": expected a whole number of 0 or more, got \"" + text + "\"");
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
 double parse_tolerance(const std::string& text) {
   const std::size_t slash = text.find('/');
   double value = 0.0;

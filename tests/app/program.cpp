@@ -43,9 +43,10 @@ std::string text_of(const fs::path& file) {
   _exit(127);
 }
 
-Outcome run_in(const fs::path& folder, const std::vector<std::string>& arguments, int interrupt_after_ms) {
+Outcome run_in(const fs::path& folder, const std::vector<std::string>& arguments, int interrupt_after_ms,
+               const std::string& device = "") {
   // Beside the folder, so that a test of what is left in it does not see them.
-  const fs::path out = folder.string() + ".out";
+  const fs::path out = device.empty() ? folder.string() + ".out" : device;
   const fs::path err = folder.string() + ".err";
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork failed");
@@ -56,8 +57,9 @@ Outcome run_in(const fs::path& folder, const std::vector<std::string>& arguments
   }
   int status = 0;
   waitpid(child, &status, 0);
-  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(out), text_of(err)};
-  fs::remove(out);
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), device.empty() ? text_of(out) : "",
+                  text_of(err)};
+  if (device.empty()) fs::remove(out);
   fs::remove(err);
   return outcome;
 }
@@ -77,6 +79,10 @@ Workplace::~Workplace() {
 
 Outcome Workplace::run(const std::vector<std::string>& arguments) const {
   return run_in(folder_, arguments, -1);
+}
+
+Outcome Workplace::run_printing_to(const std::string& device, const std::vector<std::string>& arguments) const {
+  return run_in(folder_, arguments, -1, device);
 }
 
 Outcome Workplace::run_interrupted(const std::vector<std::string>& arguments, int delay_ms) const {

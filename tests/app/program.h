@@ -23,6 +23,8 @@ class Workplace {
 
   // Runs `atomesh arguments…` in the folder. Standard input is empty.
   Outcome run(const std::vector<std::string>& arguments) const;
+  // The same with standard output going to `device`, such as /dev/full.
+  Outcome run_printing_to(const std::string& device, const std::vector<std::string>& arguments) const;
   // The same, interrupted (SIGINT) after `delay_ms`.
   Outcome run_interrupted(const std::vector<std::string>& arguments, int delay_ms) const;
 

@@ -68,6 +68,13 @@ TEST(ExitCodes, WrongUseNamesTheNearest) {
   expect_usage({"sample", "nacl-cracked", "-o", "s.txt"}, {".dat"});
   expect_usage({"sample"}, {"--list"});
   expect_usage({"defects", "a.dat", "--kind", "vacancies"}, {"vacancy"});
+  expect_usage({"defects", "a.dat", "--top", "-1"}, {"--top", "-1"});
+  expect_usage({"defects", "a.dat", "--sites", "--kind", "mixed"}, {"--sites", "mixed"});
+  expect_usage({"defects", "a.dat", "--csv", "-", "--json", "-"}, {"--csv", "--json"});
+  expect_usage({"sample", "nacl-cracked", "-o", "s.dat", "--atoms", "-5"}, {"--atoms", "-5"});
+  expect_usage({"sample", "nacl-cracked", "-o", "s.dat", "--seed", "1e3"}, {"--seed", "1e3"});
+  expect_usage({"sample", "nacl-cracked", "-o", "s.dat", "--truth", "nowhere/t.json"}, {"nowhere"});
+  expect_usage({"preprocess", "a.dat", "-o", "a.crb", "--json", "nowhere/j.json"}, {"nowhere"});
   expect_usage({"convert", "a.dat", "a.stl"}, {".stl", ".vtu"});
   expect_usage({"compare", "a.png"}, {"B"});
   expect_usage({"compare", "a.png", "b.png", "--tolerance", "2"}, {"2/255"});
@@ -155,10 +162,31 @@ TEST(ExitCodes, BadPicturesAndParameters) {
   expect_failure(place, {"render", "a.dat", "-o", "a.png", "--params", "none.crf"}, bad_input, {"none.crf"}, left);
 }
 
+TEST(ExitCodes, ReferenceIsAnotherPictureThatIsThere) {
+  const Workplace place;
+  place.write("a.dat", cube_dat);
+  expect_failure(place, {"render", "a.dat", "-o", "b.png", "--reference", "none.png"}, bad_input, {"none.png"},
+                 {"a.dat"});
+  ASSERT_EQ(place.run({"render", "a.dat", "-o", "a.png", "--size", "8x8"}).exit_code, 0);
+  expect_failure(place, {"render", "a.dat", "-o", "a.png", "--reference", "./a.png"}, wrong_use, {"a.png", "-o"},
+                 {"a.dat", "a.png"});
+}
+
 TEST(ExitCodes, DefectsWithoutUnitCellSayWhatToDo) {
   const Workplace place;
   place.write("a.dat", cube_dat);
   expect_failure(place, {"defects", "a.dat"}, bad_input, {"a.dat", "--unit-cell"}, {"a.dat"});
+}
+
+TEST(ExitCodes, AFullDiskBehindStandardOutputIsNoSuccess) {
+  const Workplace place;
+  place.write("a.dat", cube_dat);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", "a.dat"}, {"info", "a.dat", "--json", "-"}, {"sample", "--list"}}) {
+    const Outcome outcome = place.run_printing_to("/dev/full", arguments);
+    EXPECT_EQ(outcome.exit_code, bad_input) << arguments.front();
+    EXPECT_NE(outcome.err.find("standard output"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(ExitCodes, NoWindowYet) {

@@ -135,6 +135,21 @@ TEST_F(Subcommands, DefectsSelectAndExport) {
   EXPECT_EQ(run({"defects", "d.crb", "--csv", "-"}).out, csv);
 }
 
+TEST_F(Subcommands, DefectsListTheSites) {
+  const json sites = run_json({"defects", "d.crb"})["vacancies"];
+  const std::string csv = run({"defects", "d.crb", "--sites", "--csv", "-"}).out;
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "kind,species,x,y,z,atom,votes");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), sites.size() + 1);
+  char first[64];
+  std::snprintf(first, sizeof first, "vacancy,C,%.3f,%.3f,%.3f,", sites[0]["position"][0].get<double>(),
+                sites[0]["position"][1].get<double>(), sites[0]["position"][2].get<double>());
+  EXPECT_NE(csv.find(first), std::string::npos) << csv;
+  EXPECT_EQ(run({"defects", "d.crb", "--sites", "--csv", "-", "--kind", "extra"}).out,
+            csv.substr(0, csv.find('\n') + 1));
+  const std::string one = run({"defects", "d.crb", "--sites", "--csv", "-", "--top", "1"}).out;
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 2);
+}
+
 TEST_F(Subcommands, DefectsOfAnAtomsFileAreTheSame) {
   EXPECT_EQ(run_json({"defects", "d.dat"}), run_json({"defects", "d.crb"}));
 }
