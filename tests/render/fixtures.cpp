@@ -1,5 +1,7 @@
 #include "tests/render/fixtures.h"
 
+#include <array>
+#include <numbers>
 #include <random>
 
 namespace atomesh::test {
@@ -58,6 +60,28 @@ Material one_tetrahedron() {
   Material material;
   material.mesh.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
   material.mesh.tetrahedra = {{0, 1, 2, 3}};
+  finish(material, "C");
+  return material;
+}
+
+Material ring_of_bars() {
+  Material material;
+  TetMesh& mesh = material.mesh;
+  for (int bar = 0; bar < 3; ++bar) {
+    const double angle = 2.0 * std::numbers::pi / 3.0 * bar + 0.2;
+    const Vec3 along(std::cos(angle), 0.0, std::sin(angle));
+    const Vec3 across(-std::sin(angle), 0.0, std::cos(angle));
+    const Vec3 depth(0, 1, 0);
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    const Vec3 start = across - 3.0 * along - 1.5 * depth;
+    const Vec3 end = across + 3.0 * along + 1.5 * depth;
+    const Vec3 turned = 0.8 * across + 0.3 * depth;
+    const std::array<Vec3, 4> p{start + 0.8 * across, start - 0.8 * across, end + turned, end - turned};
+    mesh.vertices.insert(mesh.vertices.end(), p.begin(), p.end());
+    Tetrahedron cell{first, first + 1, first + 2, first + 3};
+    if (signed_volume(p[0], p[1], p[2], p[3]) < 0.0) std::swap(cell[0], cell[1]);
+    mesh.tetrahedra.push_back(cell);
+  }
   finish(material, "C");
   return material;
 }

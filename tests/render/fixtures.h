@@ -17,6 +17,8 @@ namespace atomesh::test {
 Material box_material(int nx, int ny, int nz, double step, const std::function<Vec3(const Vec3&)>& move = nullptr);
 // One tetrahedron with legs of 1 Å along the axes.
 Material one_tetrahedron();
+// Three bars of one tetrahedron each (vertices 4k to 4k+3) that from the front stand before one another in a circle.
+Material ring_of_bars();
 // Atoms only, of the species named, no mesh.
 Material atoms_material(const std::vector<std::pair<std::string, Vec3>>& atoms);
 

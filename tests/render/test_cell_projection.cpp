@@ -10,6 +10,7 @@
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/cpu/cpu_renderer.h"
 #include "render/cpu/reference.h"
+#include "render/cpu/reference_modes.h"
 #include "tests/render/fixtures.h"
 
 namespace atomesh::test {
@@ -188,38 +189,36 @@ TEST(CellProjection, ExtinctionFromAMillionthToAMillion) {
   }
 }
 
-// Three bars, each in front of the next and behind the one before.
-Scene ring_of_bars() {
-  Scene scene;
-  scene.mode = Mode::volume_surface;
-  for (int bar = 0; bar < 3; ++bar) {
-    const double angle = 2.0 * std::numbers::pi / 3.0 * bar + 0.2;
-    const Vec3 along(std::cos(angle), 0.0, std::sin(angle));
-    const Vec3 across(-std::sin(angle), 0.0, std::cos(angle));
-    const Vec3 depth(0, 1, 0);
-    const auto first = static_cast<Index>(scene.vertices.size());
-    const Vec3 start = across - 3.0 * along - 1.5 * depth;
-    const Vec3 end = across + 3.0 * along + 1.5 * depth;
-    for (const Vec3& p : {start + 0.5 * across, start - 0.5 * across, end + 0.3 * depth, end - 0.3 * depth}) {
-      scene.vertices.emplace_back(p);
-      scene.bounds.add(p);
-      scene.colors.emplace_back(bar == 0 ? 1.0F : 0.1F, bar == 1 ? 1.0F : 0.1F, bar == 2 ? 1.0F : 0.1F, 0.8F);
+// Whether the three bars stand before one another in a circle on the rays of this picture.
+bool cyclic(const Scene& scene, const Camera& camera, const Parameters& parameters) {
+  const reference::View view(scene, camera, parameters);
+  const std::array<Index, 3> bars{0, 1, 2};
+  bool before[3][3] = {};
+  for (int row = 0; row < camera.height; ++row) {
+    for (int column = 0; column < camera.width; ++column) {
+      const auto met = cells_on_ray(view, view.sight.pixel_ray(column, row), bars);
+      for (std::size_t i = 1; i < met.size(); ++i) before[met[i - 1].cell][met[i].cell] = true;
     }
-    Tetrahedron cell{first, first + 1, first + 2, first + 3};
-    const auto at = [&](std::size_t k) { return Vec3(scene.vertices[cell[k]]); };
-    if (signed_volume(at(0), at(1), at(2), at(3)) < 0.0) std::swap(cell[0], cell[1]);
-    scene.tetrahedra.push_back(cell);
   }
-  return scene;
+  return (before[0][1] && before[1][2] && before[2][0]) || (before[1][0] && before[2][1] && before[0][2]);
 }
 
 TEST(CellProjection, CyclicVisibilityIsRightOnEveryRay) {
-  const Scene scene = ring_of_bars();
+  const Material material = ring_of_bars();
   for (const int size : {4, 6, 9, 16, 64}) {
     for (const Projection projection : {Projection::parallel, Projection::perspective}) {
       Parameters parameters = looking(Mode::volume_surface, "front", projection);
       parameters.volume_surface.alpha_length = 20.0;
+      Scene scene = make_scene(material, parameters);
+      scene.surface.clear();
+      for (std::size_t v = 0; v < scene.colors.size(); ++v) {
+        scene.colors[v] = Vec4f(v / 4 == 0 ? 1.0F : 0.1F, v / 4 == 1 ? 1.0F : 0.1F, v / 4 == 2 ? 1.0F : 0.1F, 0.8F);
+      }
       const Camera camera = make_camera(parameters, scene.bounds, size, size);
+      // A picture of one block: no order is right for all of its rays.
+      if (size == 4) {
+        EXPECT_TRUE(cyclic(scene, camera, parameters));
+      }
       const Image judge = judged(scene, camera, parameters);
       // Floats resolve depths to a few 1e-6 Å here, and extinction is 16/Å.
       EXPECT_LE(compare_images(judge, picture(scene, camera, parameters)).max, 1e-4) << size;

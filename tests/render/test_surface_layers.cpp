@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "core/error.h"
 #include "preprocess/carve.h"
@@ -144,32 +143,6 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values("nacl-cracked", "cacuo2-spiral", "sponge", "diamond ball", "random atoms"),
                      testing::Values("iso", "front"), testing::Values(Projection::perspective, Projection::parallel)),
     case_name);
-
-// Three bars, each in front of the next and behind the one before: no order of the cells is right for every ray.
-Material ring_of_bars() {
-  Material material;
-  for (int bar = 0; bar < 3; ++bar) {
-    const double angle = 2.0 * std::numbers::pi / 3.0 * bar + 0.2;
-    const Vec3 along(std::cos(angle), 0.0, std::sin(angle));
-    const Vec3 across(-std::sin(angle), 0.0, std::cos(angle));
-    const Vec3 depth(0, 1, 0);
-    const auto first = static_cast<Index>(material.mesh.vertices.size());
-    const Vec3 start = across - 3.0 * along - 1.5 * depth;
-    const Vec3 end = across + 3.0 * along + 1.5 * depth;
-    const std::array<Vec3, 4> p{start + 0.5 * across, start - 0.5 * across, end + 0.3 * depth, end - 0.3 * depth};
-    for (const Vec3& corner : p) {
-      material.atoms.species.push_back(material.atoms.add_species("C"));
-      material.atoms.positions.push_back(corner);
-      material.mesh.vertex_atom.push_back(static_cast<Index>(material.mesh.vertices.size()));
-      material.mesh.vertices.push_back(corner);
-    }
-    Tetrahedron cell{first, first + 1, first + 2, first + 3};
-    if (signed_volume(p[0], p[1], p[2], p[3]) < 0.0) std::swap(cell[0], cell[1]);
-    material.mesh.tetrahedra.push_back(cell);
-  }
-  material.surface = extract_surface(material.mesh);
-  return material;
-}
 
 TEST(SurfaceLayersOfBars, KeepTheirPlaceWhereCellsOverlapInACycle) {
   const Material material = ring_of_bars();
