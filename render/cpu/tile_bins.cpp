@@ -6,15 +6,18 @@ namespace atomesh {
 
 namespace {
 
+// Tiles under a primitive, ends included; empty when first_column > last_column.
 struct TileRange {
-  int first_column;
-  int last_column;
-  int first_row;
-  int last_row;
+  std::uint16_t first_column = 1;
+  std::uint16_t last_column = 0;
+  std::uint16_t first_row = 0;
+  std::uint16_t last_row = 0;
 };
 
 TileRange tile_range(const PixelBox& box, int side) {
-  return {box.first_column / side, box.last_column / side, box.first_row / side, box.last_row / side};
+  if (box.empty()) return {};
+  const auto tile = [side](int pixel) { return static_cast<std::uint16_t>(pixel / side); };
+  return {tile(box.first_column), tile(box.last_column), tile(box.first_row), tile(box.last_row)};
 }
 
 }  // namespace
@@ -29,13 +32,13 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
   // A fixed number of consecutive chunks, each with its own place in every tile's list: the lists come out ascending
   // whatever the number of threads.
   const std::size_t chunks = std::clamp<std::size_t>(count / 4096, 1, 64);
+  // Finding a box costs more than keeping where it lies from the counting to the filling.
+  std::vector<TileRange> ranges(count);
+  const auto chunk_begin = [&](std::size_t chunk) { return count * chunk / chunks; };
   const auto for_chunk = [&](std::size_t chunk, auto&& visit) {
-    progress.check();
-    const std::size_t end = count * (chunk + 1) / chunks;
-    for (std::size_t i = count * chunk / chunks; i < end; ++i) {
-      const PixelBox pixels = box(i);
-      if (pixels.empty()) continue;
-      const TileRange range = tile_range(pixels, side);
+    for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i) {
+      const TileRange range = ranges[i];
+      if (range.first_column > range.last_column) continue;
       for (int row = range.first_row; row <= range.last_row; ++row) {
         for (int column = range.first_column; column <= range.last_column; ++column) {
           visit(static_cast<std::size_t>(row * bins.columns + column), i);
@@ -45,6 +48,8 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
   };
   std::vector<std::uint32_t> counts(chunks * tiles, 0);
   parallel_for(chunks, 1, [&](std::size_t chunk, std::size_t) {
+    progress.check();
+    for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i) ranges[i] = tile_range(box(i), side);
     std::uint32_t* own = &counts[chunk * tiles];
     for_chunk(chunk, [own](std::size_t tile, std::size_t) { ++own[tile]; });
   });
@@ -61,6 +66,7 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
   bins.begin[tiles] = total;
   bins.items.resize(total);
   parallel_for(chunks, 1, [&](std::size_t chunk, std::size_t) {
+    progress.check();
     std::size_t* own = &place[chunk * tiles];
     for_chunk(chunk, [&](std::size_t tile, std::size_t i) { bins.items[own[tile]++] = static_cast<Index>(i); });
   });

@@ -42,7 +42,8 @@ struct TileBins {
   }
 };
 
-// `box(i)` is the box of primitive i, clipped to the picture; it is asked twice, in parallel. Throws CancelledError.
+// `box(i)` is the box of primitive i, clipped to the picture; it is asked once for each, in parallel. Holds 8 bytes
+// a primitive meanwhile. Throws CancelledError.
 TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
                       const std::function<PixelBox(std::size_t)>& box, const Progress& progress);
 
