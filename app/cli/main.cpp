@@ -66,6 +66,9 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
                   exit_unavailable);
     }
     const std::string nearest = nearest_name(word, subcommand_names());
+    if (nearest.empty() && word.find_first_of("./") != std::string::npos) {
+      return fail(word + ": there is no such file, and no subcommand of that name\nTry: atomesh --help", exit_usage);
+    }
     return fail("no subcommand \"" + word + "\"" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") +
                     "\nTry: atomesh --help",
                 exit_usage);

@@ -58,7 +58,7 @@ std::string outcome(const std::string& stage, const Material& material, const Pi
   if (stage == "quantify_defects") {
     const DefectReport& defects = report.defects;
     return fmt::format(
-        "{} atoms displaced, {} next to a vacancy, {} next to an extra atom; {} vacancies, {} extra atoms",
+        "neighbours: displaced of {} atoms, missing of {}, too many of {}; sites: {} vacancies, {} extra atoms",
         grouped(defects.positional_atoms), grouped(defects.vacancy_atoms), grouped(defects.extra_atoms),
         grouped(material.defects.vacancies.size()), grouped(material.defects.extras.size()));
   }

@@ -1,5 +1,8 @@
 // atomesh render FILE -o IMG.png: one picture, with what made it inside the file.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -24,6 +27,19 @@
 
 namespace atomesh::cli {
 namespace {
+
+// Why the picture will show nothing but its background.
+std::string nothing_to_draw(const Material& material, const Parameters& parameters) {
+  const bool cut = std::any_of(parameters.cut_planes.begin(), parameters.cut_planes.end(),
+                               [](const CutPlane& plane) { return plane.enabled; });
+  if (parameters.mode == Mode::atoms) {
+    return cut ? "the picture is empty: no visible atom satisfies the cut planes"
+               : "the picture is empty: no atom is visible";
+  }
+  if (cut) return "the picture is empty: no tetrahedron satisfies the cut planes with all its atoms";
+  return fmt::format("the picture is empty: the {} atoms span no volume; --mode atoms shows them",
+                     material.atoms.size());
+}
 
 struct RenderArguments {
   std::string input;
@@ -117,6 +133,9 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   const auto scene_start = clock::now();
   const Scene scene = make_scene(loaded.material, parameters, session.progress());
   const double scene_ms = elapsed_since(scene_start);
+  if (scene.tetrahedra.empty() && scene.surface.empty() && scene.balls.empty()) {
+    session.note(nothing_to_draw(loaded.material, parameters));
+  }
   const Camera camera = make_camera(parameters, scene.bounds, width, height);
   RenderStats stats;
   const Image image = render(renderer, scene, camera, parameters, stats, channel_files.channels(), session.progress());

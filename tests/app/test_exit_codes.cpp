@@ -81,6 +81,33 @@ TEST(ExitCodes, WrongUseNamesTheNearest) {
   expect_usage({"bench", "seed-tabel"}, {"seed-table"});
 }
 
+TEST(ExitCodes, EmptyPicturesSayWhyTheyAre) {
+  const Workplace place;
+  place.write("a.dat", cube_dat);
+  place.write("one.dat", "Na 0 0 0\n");
+  const auto note_of = [&place](std::vector<std::string> words) {
+    words.insert(words.begin(), "render");
+    words.insert(words.end(), {"-o", "x.png", "--size", "8x8"});
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.exit_code, 0);
+    return outcome.err;
+  };
+  const std::vector<std::string> cut{"--set", "cut_plane.1.enabled=true", "cut_plane.1.distance=-1e6"};
+  for (const char* mode : {"volume-surface", "xray", "atoms"}) {
+    std::vector<std::string> words{"a.dat", "--mode", mode};
+    words.insert(words.end(), cut.begin(), cut.end());
+    EXPECT_NE(note_of(words).find("cut planes"), std::string::npos) << mode;
+    EXPECT_EQ(note_of({"a.dat", "--mode", mode}).find("empty"), std::string::npos) << mode;
+  }
+  EXPECT_NE(note_of({"one.dat", "--mode", "surface"}).find("--mode atoms"), std::string::npos);
+}
+
+TEST(ExitCodes, AFileThatIsNotThereIsSaidToBeMissing) {
+  const Outcome outcome = Workplace().run({"nope.crb"});
+  EXPECT_EQ(outcome.exit_code, wrong_use);
+  EXPECT_NE(outcome.err.find("nope.crb: there is no such file"), std::string::npos) << outcome.err;
+}
+
 TEST(ExitCodes, PipelineOptionsDoNothingForAMaterialFile) {
   const Workplace place;
   place.write("a.dat", cube_dat);
