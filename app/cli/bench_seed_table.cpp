@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "app/cli/machine.h"
@@ -83,7 +84,10 @@ std::vector<SampleInfo> chosen_samples(const std::vector<std::string>& names) {
 
 // "123 (9,254; 75×)": ours, the seed's, and how many times faster.
 std::string cell(double ours, double seeds) {
-  return fmt::format("{} ({}; {}×)", milliseconds(ours), milliseconds(seeds), fmt::format("{:.3g}", seeds / ours));
+  const double ratio = seeds / ours;
+  return fmt::format(
+      "{} ({}; {}×)", milliseconds(ours), milliseconds(seeds),
+      ratio < 999.5 ? fmt::format("{:.3g}", ratio) : grouped(static_cast<std::uint64_t>(std::lround(ratio))));
 }
 
 Json row_json(const SampleInfo& sample, std::size_t atoms, std::string_view what, Json settings, const Times& times,
@@ -162,6 +166,9 @@ BenchResult bench_seed_table(const SeedTableOptions& options, Session& session) 
       "Pictures: "
       "material in memory to pixels. Made by `atomesh bench seed-table`.",
       options.repeats, options.width, options.height, renderer.name(), machine_name(), build_commit());
+  if (options.atoms != 0 || options.width != 512 || options.height != 512) {
+    result.caption += " Other sizes than the seed's were asked for: the ratios compare different amounts of work.";
+  }
   result.json = Json::object({{"machine", machine_name()}, {"commit", build_commit()}, {"rows", rows}});
   return result;
 }
