@@ -50,7 +50,7 @@ CellSites cell_sites(const UnitCell& cell, const std::vector<Species>& table, Fe
   return sites;
 }
 
-// Everything within `radius` of basis atom i, ascending; `kind` of an entry is for now the basis atom it leads to.
+// Everything within `radius` of basis atom i, ascending; `kind` of an entry is here the basis atom it leads to.
 std::vector<FeatureEntry> surroundings(const CellSites& sites, std::size_t i, double radius) {
   std::vector<FeatureEntry> entries;
   std::array<int, 3> range;
