@@ -88,8 +88,11 @@ struct Range {
   }
 };
 
+// In every pixel; only where `outline_on_rays` says that pixel centres lie exactly on the sample's outline may up to
+// one pixel in a hundred be anything the judge sees around its centre.
 void expect_agreement(const Material& material, const Parameters& parameters,
-                      const std::function<void(Camera&, const Scene&)>& adjust = nullptr) {
+                      const std::function<void(Camera&, const Scene&)>& adjust = nullptr,
+                      bool outline_on_rays = false) {
   if (judged_renderers().empty()) GTEST_SKIP() << "this build has no renderer beside the judge";
   const Scene scene = make_scene(material, parameters);
   Camera camera = make_camera(parameters, scene.bounds, 47, 35);
@@ -100,8 +103,7 @@ void expect_agreement(const Material& material, const Parameters& parameters,
     const double tolerance = 2.0 / 255.0;
     const ImageDifference difference = compare_images(drawn.image, judge.image, tolerance);
     if (difference.pixels_over != 0) {
-      // Outlines are lines of the picture: only few of its pixels can lie on them.
-      EXPECT_LE(difference.pixels_over, judge.image.pixels.size() / 100) << name;
+      EXPECT_LE(difference.pixels_over, outline_on_rays ? judge.image.pixels.size() / 100 : 0) << name;
       const Range range(scene, camera, parameters);
       for (std::size_t i = 0; i < judge.image.pixels.size(); ++i) {
         const Vec4f a = drawn.image.pixels[i];
@@ -135,7 +137,10 @@ class EveryScene : public testing::TestWithParam<SceneCase> {};
 
 TEST_P(EveryScene, IsTheJudges) {
   const auto& [scene, mode, view, projection] = GetParam();
-  expect_agreement(cached_material(scene), looking(mode, view, projection));
+  // Along [111] the corner's edges project onto lines through pixel centres.
+  const bool outline_on_rays = std::string_view(scene) == "tetrahedron" &&
+                               std::string_view(view).starts_with("45,35.26") && projection == Projection::parallel;
+  expect_agreement(cached_material(scene), looking(mode, view, projection), nullptr, outline_on_rays);
 }
 
 std::string case_name(const testing::TestParamInfo<SceneCase>& info) {
