@@ -137,11 +137,14 @@ Sample grow_diamond_a_centers(std::size_t atoms, std::uint64_t seed, Progress& p
     sample.atoms.positions[sites[1]] += nitrogen_retreat * axis;
     for (const Index site : sites) {
       sample.atoms.species[site] = nitrogen;
+      sample.truth.substitutions.push_back({site, static_cast<Index>(sample.truth.vacancies.size())});
       sample.truth.vacancies.push_back({crystal.positions[site], "C"});
       sample.truth.extras.push_back(site);
     }
   }
   std::sort(sample.truth.extras.begin(), sample.truth.extras.end());
+  std::sort(sample.truth.substitutions.begin(), sample.truth.substitutions.end(),
+            [](const auto& a, const auto& b) { return a.atom < b.atom; });
   return sample;
 }
 

@@ -80,6 +80,7 @@ Sample grow(std::size_t atoms, double indium_share, std::uint64_t seed, Progress
     if (sample.atoms.species[i] == indium) {
       // A foreign atom on a gallium site, which has moved with it.
       sample.truth.extras.push_back(static_cast<Index>(i));
+      sample.truth.substitutions.push_back({static_cast<Index>(i), static_cast<Index>(sample.truth.vacancies.size())});
       sample.truth.vacancies.push_back({p, "Ga"});
     } else if (glm::distance(p, sites[i]) > displaced_threshold) {
       sample.truth.displaced.push_back(static_cast<Index>(i));

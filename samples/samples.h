@@ -31,6 +31,12 @@ struct SampleTruth {
   std::vector<Index> extras;
   // Atoms on a site of their species but more than 0.01 Å from it, ascending.
   std::vector<Index> displaced;
+  // The foreign atoms on sites: each is one of `extras`, its site one of `vacancies`. Ascending by atom.
+  struct Substitution {
+    Index atom;
+    Index site;  // index into `vacancies`
+  };
+  std::vector<Substitution> substitutions;
 };
 
 struct Sample {

@@ -66,12 +66,21 @@ Json truth_json(const Sample& sample) {
   }
   Json displaced = Json::array();
   for (const Index atom : sample.truth.displaced) displaced.push(atom);
+  // Foreign atoms on sites, which stand among the extras too and their sites among the vacancies.
+  Json substitutions = Json::array();
+  Json substitution_atoms = Json::array();
+  for (const SampleTruth::Substitution& substitution : sample.truth.substitutions) {
+    substitutions.push(sample.atoms.positions[substitution.atom]);
+    substitution_atoms.push(substitution.atom);
+  }
   return Json::object({{"atoms", sample.atoms.size()},
                        {"unit_cell", sample.unit_cell ? cell_json(*sample.unit_cell) : Json()},
                        {"vacancies", vacancies},
                        {"vacancy_species", vacancy_species},
                        {"extras", extras},
                        {"extra_atoms", extra_atoms},
+                       {"substitutions", substitutions},
+                       {"substitution_atoms", substitution_atoms},
                        {"displaced", displaced}});
 }
 
