@@ -190,6 +190,17 @@ class Finder {
     for (const ExtraAtom& extra : defects.extras) {
       if (extra.atom >= counts_.atoms) report("extras", "atom " + std::to_string(extra.atom) + " does not exist");
     }
+    for (const Substitution& substitution : defects.substitutions) {
+      if (substitution.atom >= counts_.atoms) {
+        report("substitutions", "atom " + std::to_string(substitution.atom) + " does not exist");
+      }
+      if (substitution.expected >= m_.atoms.species_table.size()) {
+        report("substitutions", "a species that is not in the table");
+      }
+      if (substitution.vacancy >= defects.vacancies.size()) {
+        report("substitutions", "vacancy " + std::to_string(substitution.vacancy) + " does not exist");
+      }
+    }
   }
 
   const Material& m_;

@@ -223,12 +223,14 @@ CrbReader::CrbReader(std::string_view bytes, std::string path) : bytes_(bytes), 
     throw InputError(path_, 0, "section header: cut off after " + std::to_string(bytes.size()) + " bytes");
   }
   std::memcpy(&header, bytes.data(), sizeof(header));
-  if (header.version != crb_version) {
+  if (header.version < crb_oldest_version || header.version > crb_version) {
     throw InputError(path_, 0,
                      "section header: this is .crb version " + std::to_string(header.version) +
-                         ", this program reads version " + std::to_string(crb_version) +
+                         ", this program reads versions " + std::to_string(crb_oldest_version) + " to " +
+                         std::to_string(crb_version) +
                          "; make the file anew from its atoms, or use the program that wrote it");
   }
+  version_ = header.version;
   if (header.sections > 64) throw InputError(path_, 0, "section header: damaged (it counts too many sections)");
   const std::uint64_t table_end = sizeof(header) + header.sections * sizeof(CrbEntry);
   if (bytes.size() < table_end) {

@@ -50,6 +50,7 @@ class CrbReader {
   // `bytes` is the whole file and must live as long as the reader; `path` is its name in messages.
   CrbReader(std::string_view bytes, std::string path);
 
+  std::uint32_t version() const { return version_; }
   const std::vector<CrbEntry>& table() const { return table_; }
   static std::string name(const CrbEntry& entry);
   // nullptr when there is none.
@@ -76,6 +77,7 @@ class CrbReader {
 
   std::string_view bytes_;
   std::string path_;
+  std::uint32_t version_ = 0;
   std::vector<CrbEntry> table_;
 };
 

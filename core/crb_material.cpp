@@ -42,7 +42,8 @@ CrbCounts crb_counts(const Material& m) {
           m.surface.triangles.size(),
           m.defects.vacancies.size(),
           m.defects.extras.size(),
-          flags};
+          flags,
+          m.defects.substitutions.size()};
 }
 
 ByteWriter species_bytes(const Material& m) {
@@ -174,6 +175,13 @@ class Sections {
       extras.value(extra.votes);
     }
     if (!defects.extras.empty()) add("extras", std::move(extras));
+    ByteWriter substitutions;
+    for (const Substitution& substitution : defects.substitutions) {
+      substitutions.value(substitution.atom);
+      substitutions.value(static_cast<std::uint32_t>(substitution.expected));
+      substitutions.value(substitution.vacancy);
+    }
+    if (!defects.substitutions.empty()) add("substitutions", std::move(substitutions));
   }
 
   std::deque<ByteWriter> owned_;
@@ -220,7 +228,9 @@ class MaterialReader {
 
   void read_counts() {
     ByteReader bytes(file_, "counts", progress_);
-    counts_ = bytes.value<CrbCounts>();
+    const auto since_1 = bytes.value<std::array<std::byte, crb_counts_size_1>>();
+    std::memcpy(&counts_, since_1.data(), since_1.size());
+    if (file_.version() > 1) counts_.substitutions = bytes.value<std::uint64_t>();
     bytes.finish();
     for (const std::uint64_t count : {counts_.atoms, counts_.vertices, counts_.tetrahedra, counts_.triangles}) {
       if (count >= no_index) file_.fail("counts", "more than 4,294,967,294 of something");
@@ -234,7 +244,7 @@ class MaterialReader {
 
   // The file has the sections its counts call for, and no others.
   void check_table() const {
-    const std::array<std::pair<const char*, bool>, 19> sections{{
+    const std::array<std::pair<const char*, bool>, 20> sections{{
         {"counts", true},
         {"species", true},
         {"box", true},
@@ -253,6 +263,7 @@ class MaterialReader {
         {"defects", has(crb_has_defects)},
         {"vacancies", counts_.vacancies > 0},
         {"extras", counts_.extras > 0},
+        {"substitutions", counts_.substitutions > 0},
         {"provenance", true},
     }};
     auto next = file_.table().begin();
@@ -393,6 +404,19 @@ class MaterialReader {
         extra.atom = bytes.value<std::uint32_t>();
         extra.votes = bytes.value<std::uint32_t>();
         defects.extras.push_back(extra);
+      }
+      bytes.finish();
+    }
+    if (counts_.substitutions > 0) {
+      ByteReader bytes(file_, "substitutions", progress_);
+      for (std::uint64_t i = 0; i < counts_.substitutions; ++i) {
+        Substitution substitution{};
+        substitution.atom = bytes.value<std::uint32_t>();
+        const auto expected = bytes.value<std::uint32_t>();
+        if (expected > 65535) file_.fail("substitutions", "a species that is not in the table");
+        substitution.expected = static_cast<std::uint16_t>(expected);
+        substitution.vacancy = bytes.value<std::uint32_t>();
+        defects.substitutions.push_back(substitution);
       }
       bytes.finish();
     }

@@ -4,7 +4,7 @@
 // Lines that are empty or start with # are skipped; fields are separated by blanks. Numbers are the shortest decimals
 // that read back to the same bits. Sections stand in this order, and those marked with ? are left out when empty:
 //
-//   atomesh-crt 1
+//   atomesh-crt 2
 //   program "…", input "…", option "name" "value", count "name" N, stage "name" MS      (one a line, the last three any
 //                                                                                      number of times)
 //   species N               N lines: "name" radius
@@ -20,9 +20,10 @@
 //   defects N           ?   N lines: positional vacancy extra
 //   vacancies N         ?   N lines: x y z species votes
 //   extras N            ?   N lines: atom votes
+//   substitutions N     ?   N lines: atom, the species expected in its place, index of the vacancy it fills
 //   end
 //
-// Indices count from 0. Strings in quotes know \" \\ \n \t and \xHH.
+// Indices count from 0. Strings in quotes know \" \\ \n \t and \xHH. Version 1, still read, has no substitutions.
 #pragma once
 
 #include "core/material_file.h"
@@ -30,7 +31,8 @@
 namespace atomesh {
 
 inline constexpr std::string_view crt_magic{"atomesh-crt"};
-inline constexpr int crt_version = 1;
+inline constexpr int crt_version = 2;
+inline constexpr int crt_oldest_version = 1;
 
 // `bytes` is the whole file, `path` its name in messages.
 Material read_crt(std::string_view bytes, const std::string& path, const MaterialParts& parts, Progress& progress);

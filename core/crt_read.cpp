@@ -171,11 +171,13 @@ class CrtReader {
     if (!advance()) throw InputError(path_, 0, "not a .crt file (it is empty)");
     if (next_field(rest_) != crt_magic) fail("not a .crt file (expected \"atomesh-crt\")");
     const std::int64_t version = integer("the format's version");
-    if (version != crt_version) {
-      fail("this is .crt version " + std::to_string(version) + ", this program reads version " +
-           std::to_string(crt_version) + "; make the file anew from its atoms, or use the program that wrote it");
+    if (version < crt_oldest_version || version > crt_version) {
+      fail("this is .crt version " + std::to_string(version) + ", this program reads versions " +
+           std::to_string(crt_oldest_version) + " to " + std::to_string(crt_version) +
+           "; make the file anew from its atoms, or use the program that wrote it");
     }
     end_of_line();
+    version_ = version;
     Provenance& provenance = m_.provenance;
     next_line("program");
     expect_word("program");
@@ -387,6 +389,16 @@ class CrtReader {
       }
       finish_line("end");
     }
+    if (version_ > 1 && flag("substitutions")) {
+      defects.substitutions.resize(count_of_lines(6));
+      for (Substitution& substitution : defects.substitutions) {
+        finish_line("a substitution");
+        substitution.atom = index(m_.atoms.size(), "an atom");
+        substitution.expected = species();
+        substitution.vacancy = index(defects.vacancies.size(), "a vacancy");
+      }
+      finish_line("end");
+    }
   }
 
   // What needs more than one line to see.
@@ -401,6 +413,7 @@ class CrtReader {
   LineReader lines_;
   Progress& progress_;
   std::string_view rest_;
+  std::int64_t version_ = 0;
   std::unordered_map<std::string_view, std::uint16_t> species_;
   Material m_;
 };

@@ -238,6 +238,13 @@ class CrtWriter {
       line.word("extras").number(defects.extras.size()).end();
       for (const ExtraAtom& extra : defects.extras) line.number(extra.atom).number(extra.votes).end();
     }
+    if (!defects.substitutions.empty()) {
+      text += "\n# atom, species expected in its place, vacancy that it fills\n";
+      line.word("substitutions").number(defects.substitutions.size()).end();
+      for (const Substitution& s : defects.substitutions) {
+        line.number(s.atom).word(m_.atoms.species_table[s.expected].name).number(s.vacancy).end();
+      }
+    }
     text += '\n';
     file_.write(text);
   }

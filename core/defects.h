@@ -20,6 +20,13 @@ struct ExtraAtom {
   Index votes;  // atoms in the first shells to whom it is one too many; 0 is possible for a foreign species
 };
 
+// An atom of another species on a site of the crystal: one vacancy and one extra atom that belong together.
+struct Substitution {
+  Index atom;              // index into Atoms; one of Defects::extras
+  std::uint16_t expected;  // index into Atoms::species_table of what the crystal has there
+  Index vacancy;           // index into Defects::vacancies: the site that it took
+};
+
 struct Defects {
   // One value per atom each; all three empty when no unit cell is known and no scalar was chosen.
   std::vector<float>
@@ -28,6 +35,7 @@ struct Defects {
   std::vector<float> extra;    // neighbours the sample has and the perfect crystal lacks
   std::vector<VacancySite> vacancies;
   std::vector<ExtraAtom> extras;
+  std::vector<Substitution> substitutions;  // ascending atoms; their vacancies and extra atoms stand in the lists above
 
   bool present() const { return !positional.empty(); }
   // True where any of the three values is above `limit`.

@@ -11,7 +11,7 @@ namespace atomesh {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kind_names{"vacancy", "extra", "positional", "mixed"};
+constexpr std::array<std::string_view, 5> kind_names{"vacancy", "extra", "positional", "mixed", "substitution"};
 // Joins first neighbours and not second ones: fcc's are 1.41, bcc's (which belong together) 1.15 apart.
 constexpr double joining = 1.3;
 
@@ -62,6 +62,10 @@ Members collect(const Material& material) {
 DefectKind kind_of(const DefectCluster& cluster, const Defects& defects) {
   const bool vacancies = !cluster.vacancies.empty();
   const bool extras = !cluster.extras.empty();
+  const std::size_t pairs = cluster.substitutions.size();
+  if (pairs > 0 && pairs == cluster.vacancies.size() && pairs == cluster.extras.size()) {
+    return DefectKind::substitution;
+  }
   if (vacancies && extras) return DefectKind::mixed;
   if (vacancies) return DefectKind::vacancy;
   if (extras) return DefectKind::extra;
@@ -88,7 +92,7 @@ DefectKind defect_kind_from_name(std::string_view name) {
   std::string message = "no kind of defect is called \"" + std::string(name) + "\"";
   const std::string near = nearest_name(name, kind_names);
   if (!near.empty()) message += "; did you mean \"" + near + "\"?";
-  throw UsageError(message + " Kinds: vacancy, extra, positional, mixed");
+  throw UsageError(message + " Kinds: vacancy, extra, positional, mixed, substitution");
 }
 
 std::vector<DefectCluster> cluster_defects(const Material& material, double distance) {
@@ -124,8 +128,12 @@ std::vector<DefectCluster> cluster_defects(const Material& material, double dist
       clusters[cluster].vacancies.push_back(m - static_cast<Index>(members.atom.size()));
     }
   }
+  const std::vector<ExtraAtom>& extras = material.defects.extras;
+  const std::vector<Substitution>& substitutions = material.defects.substitutions;
   std::vector<Index> extra_of(material.atoms.size(), no_index);
-  for (Index e = 0; e < material.defects.extras.size(); ++e) extra_of[material.defects.extras[e].atom] = e;
+  for (Index e = 0; e < extras.size(); ++e) extra_of[extras[e].atom] = e;
+  std::vector<Index> substitution_of(extras.size(), no_index);
+  for (Index s = 0; s < substitutions.size(); ++s) substitution_of[extra_of[substitutions[s].atom]] = s;
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     DefectCluster& cluster = clusters[c];
     // Members on the other side of a periodic face are taken next to the first one.
@@ -140,7 +148,11 @@ std::vector<DefectCluster> cluster_defects(const Material& material, double dist
     }
     cluster.peak = 0.0F;
     for (const Index atom : cluster.atoms) {
-      if (extra_of[atom] != no_index) cluster.extras.push_back(extra_of[atom]);
+      if (extra_of[atom] != no_index) {
+        cluster.extras.push_back(extra_of[atom]);
+        const Index substitution = substitution_of[extra_of[atom]];
+        if (substitution != no_index) cluster.substitutions.push_back(substitution);
+      }
       const Defects& d = material.defects;
       cluster.peak = std::max({cluster.peak, d.positional[atom], d.vacancy[atom], d.extra[atom]});
     }

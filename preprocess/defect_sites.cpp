@@ -286,4 +286,41 @@ std::vector<ExtraAtom> find_extras(const SiteSearch& search, Progress& progress)
   return extras;
 }
 
+std::vector<Substitution> find_substitutions(const SiteSearch& search, const std::vector<VacancySite>& vacancies,
+                                             const std::vector<ExtraAtom>& extras) {
+  if (vacancies.empty() || extras.empty()) return {};
+  struct Pair {
+    double distance2;
+    Index atom;
+    Index vacancy;
+  };
+  std::vector<std::uint8_t> extra(search.atoms.size(), 0);
+  for (const ExtraAtom& e : extras) extra[e.atom] = 1;
+  std::vector<Pair> pairs;
+  std::vector<Index> slots;
+  for (Index v = 0; v < vacancies.size(); ++v) {
+    search.grid.find(vacancies[v].position, search.features.pair_distance, slots);
+    for (const Index slot : slots) {
+      const Index atom = search.grid.point(slot);
+      if (!extra[atom] || search.atoms.species[atom] == vacancies[v].species) continue;
+      const Vec3 d = search.grid.position(slot) - vacancies[v].position;
+      pairs.push_back({glm::dot(d, d), atom, v});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.distance2, a.atom, a.vacancy) < std::tie(b.distance2, b.atom, b.vacancy);
+  });
+  std::vector<std::uint8_t> filled(vacancies.size(), 0);
+  std::vector<Substitution> substitutions;
+  for (const Pair& pair : pairs) {
+    if (!extra[pair.atom] || filled[pair.vacancy]) continue;
+    extra[pair.atom] = 0;
+    filled[pair.vacancy] = 1;
+    substitutions.push_back({pair.atom, vacancies[pair.vacancy].species, pair.vacancy});
+  }
+  std::sort(substitutions.begin(), substitutions.end(),
+            [](const Substitution& a, const Substitution& b) { return a.atom < b.atom; });
+  return substitutions;
+}
+
 }  // namespace atomesh

@@ -55,4 +55,8 @@ std::vector<VacancySite> find_vacancies(const SiteSearch& search, Progress& prog
 // Ascending; an interstitial, a substituted atom, the second atom on one site.
 std::vector<ExtraAtom> find_extras(const SiteSearch& search, Progress& progress);
 
+// Extra atoms that took a vacant site: within the pair distance of it, of another species, nearest first, each once.
+std::vector<Substitution> find_substitutions(const SiteSearch& search, const std::vector<VacancySite>& vacancies,
+                                             const std::vector<ExtraAtom>& extras);
+
 }  // namespace atomesh

@@ -148,6 +148,7 @@ Defects quantify_defects(const Atoms& atoms, const UnitCell& cell, const DefectO
     census.absent += count_vacancies(search, defects, report);
     if (fits()) {
       defects.extras = find_extras(search, progress);
+      defects.substitutions = find_substitutions(search, defects.vacancies, defects.extras);
     } else {
       defects.vacancies.clear();
       defects.vacancy = certain;

@@ -48,27 +48,28 @@ Positional summarize_positional(const Defects& defects) {
 }
 
 TextTable cluster_table(const std::vector<DefectCluster>& clusters) {
-  TextTable table({"kind", "x", "y", "z", "radius", "atoms", "vacancies", "extras", "peak"});
+  TextTable table({"kind", "x", "y", "z", "radius", "atoms", "vacancies", "extras", "substitutions", "peak"});
   for (const DefectCluster& cluster : clusters) {
     table.row({std::string(defect_kind_name(cluster.kind)), fmt::format("{:.3f}", cluster.centre.x),
                fmt::format("{:.3f}", cluster.centre.y), fmt::format("{:.3f}", cluster.centre.z),
                fmt::format("{:.3f}", cluster.radius), std::to_string(cluster.atoms.size()),
                std::to_string(cluster.vacancies.size()), std::to_string(cluster.extras.size()),
-               fmt::format("{:.4g}", cluster.peak)});
+               std::to_string(cluster.substitutions.size()), fmt::format("{:.4g}", cluster.peak)});
   }
   return table;
 }
 
-// The vacant sites, then the extra atoms; one of the two with `kind`.
+// The vacant sites, then the extra atoms, then the substitutions, whose site and atom are among the former; one of the
+// three with `kind`. `expected` is the species that the crystal has where an atom is a substitution.
 TextTable site_table(const Material& material, std::optional<DefectKind> kind, std::size_t top) {
-  TextTable table({"kind", "species", "x", "y", "z", "atom", "votes"});
+  TextTable table({"kind", "species", "x", "y", "z", "atom", "votes", "expected"});
   const Defects& defects = material.defects;
   std::size_t rows = 0;
   const auto row = [&](std::string_view what, const std::string& species, const Vec3& position, std::string atom,
-                       auto votes) {
+                       std::optional<Index> votes, const std::string& expected = "") {
     if (top > 0 && rows++ >= top) return;
     table.row({std::string(what), species, fmt::format("{:.3f}", position.x), fmt::format("{:.3f}", position.y),
-               fmt::format("{:.3f}", position.z), std::move(atom), fmt::format("{}", votes)});
+               fmt::format("{:.3f}", position.z), std::move(atom), votes ? fmt::format("{}", *votes) : "", expected});
   };
   if (kind.value_or(DefectKind::vacancy) == DefectKind::vacancy) {
     for (const VacancySite& site : defects.vacancies) {
@@ -79,6 +80,12 @@ TextTable site_table(const Material& material, std::optional<DefectKind> kind, s
     for (const ExtraAtom& extra : defects.extras) {
       row("extra", std::string(material.atoms.species_name(extra.atom)), material.atoms.positions[extra.atom],
           std::to_string(extra.atom), extra.votes);
+    }
+  }
+  if (kind.value_or(DefectKind::substitution) == DefectKind::substitution) {
+    for (const Substitution& s : defects.substitutions) {
+      row("substitution", material.atoms.species_name(s.atom), material.atoms.positions[s.atom], std::to_string(s.atom),
+          std::nullopt, material.atoms.species_table[s.expected].name);
     }
   }
   return table;
@@ -99,6 +106,13 @@ Json defects_json(const Material& material, const std::vector<DefectCluster>& cl
                               {"position", material.atoms.positions[extra.atom]},
                               {"votes", extra.votes}}));
   }
+  Json substitutions = Json::array();
+  for (const Substitution& s : defects.substitutions) {
+    substitutions.push(Json::object({{"atom", s.atom},
+                                     {"species", material.atoms.species_name(s.atom)},
+                                     {"expected", species[s.expected].name},
+                                     {"position", material.atoms.positions[s.atom]}}));
+  }
   const Positional positional = summarize_positional(defects);
   Json list = Json::array();
   for (const DefectCluster& cluster : clusters) {
@@ -108,11 +122,13 @@ Json defects_json(const Material& material, const std::vector<DefectCluster>& cl
                             {"atoms", cluster.atoms.size()},
                             {"vacancies", cluster.vacancies.size()},
                             {"extras", cluster.extras.size()},
+                            {"substitutions", cluster.substitutions.size()},
                             {"peak", static_cast<double>(cluster.peak)}}));
   }
   return Json::object(
       {{"vacancies", vacancies},
        {"extras", extras},
+       {"substitutions", substitutions},
        {"positional", Json::object({{"atoms", positional.atoms}, {"max", positional.max}, {"mean", positional.mean}})},
        {"clusters", list}});
 }
@@ -125,8 +141,10 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
     throw UsageError("defects: --csv - and --json - cannot both have standard output; give one of them a file");
   }
   if (!arguments.csv.empty() && !csv_to_stdout) check_output(arguments.csv, {".csv"});
-  if (arguments.sites && one_kind && kind != DefectKind::vacancy && kind != DefectKind::extra) {
-    throw UsageError("defects: --sites lists vacancies and extra atoms; --kind " + arguments.kind + " has no sites");
+  if (arguments.sites && one_kind && kind != DefectKind::vacancy && kind != DefectKind::extra &&
+      kind != DefectKind::substitution) {
+    throw UsageError("defects: --sites lists vacancies, extra atoms and substitutions; --kind " + arguments.kind +
+                     " has no sites");
   }
 
   const LoadedMaterial loaded =
@@ -153,9 +171,12 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
     session.print_text(table.csv());
   } else {
     const Positional positional = summarize_positional(material.defects);
-    session.print("{} atoms: {} vacancies, {} extra atoms, {} atoms displaced (largest value {:.4g}, mean {:.4g})",
+    const std::size_t substitutions = material.defects.substitutions.size();
+    session.print("{} atoms: {} vacancies, {} extra atoms{}, {} atoms displaced (largest value {:.4g}, mean {:.4g})",
                   grouped(material.atoms.size()), grouped(material.defects.vacancies.size()),
-                  grouped(material.defects.extras.size()), grouped(positional.atoms), positional.max, positional.mean);
+                  grouped(material.defects.extras.size()),
+                  substitutions > 0 ? fmt::format(" ({} of each make up a substitution)", grouped(substitutions)) : "",
+                  grouped(positional.atoms), positional.max, positional.mean);
     session.print("{} clusters{}{}; lengths in Å", grouped(found), one_kind ? " of kind " + arguments.kind : "",
                   clusters.size() < found ? fmt::format(", the {} largest:", clusters.size()) : "");
     if (!table.empty()) session.print_text(table.text());
@@ -176,10 +197,12 @@ Command add_defects(CLI::App& app) {
   app.add_option("FILE", arguments->input, "A .crb or .crt, or an atoms file to preprocess on the way")->required();
   app.add_flag(
       "--sites", arguments->sites,
-      "List each vacant site and each extra atom instead of the clusters; --kind vacancy or extra: one of them");
+      "List each vacant site, each extra atom and each substitution (an extra atom on a vacant site) instead of the "
+      "clusters; --kind vacancy, extra or substitution: one of them");
   app.add_option("--csv", arguments->csv, "Write the list as CSV to FILE, or to standard output for -")
       ->type_name("FILE|-");
-  app.add_option("--kind", arguments->kind, "Only clusters of this kind: vacancy, extra, positional or mixed")
+  app.add_option("--kind", arguments->kind,
+                 "Only clusters of this kind: vacancy, extra, substitution, positional or mixed")
       ->type_name("KIND");
   app.add_option_function<std::string>(
          "--top", [arguments](const std::string& text) { arguments->top = parse_count("--top", text); },

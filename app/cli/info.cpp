@@ -55,7 +55,7 @@ std::size_t memory_of(const Material& m) {
   bytes += bytes_of(m.mesh.vertices) + bytes_of(m.mesh.tetrahedra) + bytes_of(m.mesh.vertex_atom);
   bytes += bytes_of(m.surface.triangles) + bytes_of(m.surface.tetrahedron) + bytes_of(m.surface.face);
   bytes += bytes_of(m.defects.positional) + bytes_of(m.defects.vacancy) + bytes_of(m.defects.extra);
-  return bytes + bytes_of(m.defects.vacancies) + bytes_of(m.defects.extras);
+  return bytes + bytes_of(m.defects.vacancies) + bytes_of(m.defects.extras) + bytes_of(m.defects.substitutions);
 }
 
 std::vector<std::string> problems_of(const Material& material) {

@@ -130,7 +130,7 @@ TEST_F(Subcommands, DefectsSelectAndExport) {
   EXPECT_EQ(run_json({"defects", "d.crb", "--kind", "extra"})["clusters"].size(), 0U);
   ASSERT_EQ(run({"defects", "d.crb", "--csv", "d.csv"}).exit_code, 0);
   const std::string csv = place->read("d.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "kind,x,y,z,radius,atoms,vacancies,extras,peak");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "kind,x,y,z,radius,atoms,vacancies,extras,substitutions,peak");
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), all["clusters"].size() + 1);
   EXPECT_EQ(run({"defects", "d.crb", "--csv", "-"}).out, csv);
 }
@@ -138,7 +138,7 @@ TEST_F(Subcommands, DefectsSelectAndExport) {
 TEST_F(Subcommands, DefectsListTheSites) {
   const json sites = run_json({"defects", "d.crb"})["vacancies"];
   const std::string csv = run({"defects", "d.crb", "--sites", "--csv", "-"}).out;
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "kind,species,x,y,z,atom,votes");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "kind,species,x,y,z,atom,votes,expected");
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), sites.size() + 1);
   char first[64];
   std::snprintf(first, sizeof first, "vacancy,C,%.3f,%.3f,%.3f,", sites[0]["position"][0].get<double>(),
@@ -231,7 +231,7 @@ TEST_F(Subcommands, InfoSaysWhatIsThere) {
   expect_keys(crb, {"file", "kind", "version", "atoms", "tetrahedra", "triangles", "box", "species", "scalars",
                     "provenance", "valid"});
   EXPECT_EQ(crb["kind"], "crb");
-  EXPECT_EQ(crb["version"], 1);
+  EXPECT_EQ(crb["version"], 2);
   EXPECT_EQ(crb["valid"], true) << crb["problems"];
   EXPECT_EQ(crb["scalars"]["vacancy"].size(), 2U);
   EXPECT_EQ(crb["provenance"]["input"], "d.dat");

@@ -18,6 +18,7 @@ struct MaterialKind {
   bool unit_cell = true;
   bool defects = true;
   bool surface_cells = true;
+  bool substitutions = true;  // where there are defects
 };
 
 inline Material random_material(unsigned seed, const MaterialKind& kind = {}) {
@@ -94,6 +95,7 @@ inline Material random_material(unsigned seed, const MaterialKind& kind = {}) {
     }
     m.defects.vacancies = {{point(), 2, 17}, {point(), 0, 0}};
     m.defects.extras = {{static_cast<Index>(kind.atoms - 1), 8}};
+    if (kind.substitutions) m.defects.substitutions = {{static_cast<Index>(kind.atoms - 1), 2, 1}};
   }
   m.provenance.program = "atomesh 0.1.0";
   m.provenance.input = "näcl \"1\".dat";
@@ -156,6 +158,13 @@ inline std::string difference(const Material& a, const Material& b) {
   if (!std::equal(a.defects.extras.begin(), a.defects.extras.end(), b.defects.extras.begin(), b.defects.extras.end(),
                   same_extra)) {
     return "extras";
+  }
+  const auto same_substitution = [](const Substitution& s, const Substitution& t) {
+    return s.atom == t.atom && s.expected == t.expected && s.vacancy == t.vacancy;
+  };
+  if (!std::equal(a.defects.substitutions.begin(), a.defects.substitutions.end(), b.defects.substitutions.begin(),
+                  b.defects.substitutions.end(), same_substitution)) {
+    return "substitutions";
   }
   const Provenance& p = a.provenance;
   const Provenance& q = b.provenance;

@@ -139,13 +139,55 @@ TEST(DamagedCrb, OtherVersionsAreNamed) {
   bytes[8] = 7;
   reseal(bytes);
   write_bytes(path, bytes);
-  EXPECT_NE(refusal([&] { read_material(path); }).find("version 7, this program reads version 1"), std::string::npos);
+  EXPECT_NE(refusal([&] { read_material(path); }).find("version 7, this program reads versions 1 to 2"),
+            std::string::npos);
   write_material(folder.file("a.crt"), random_material(3, small));
   std::string text = read_bytes(folder.file("a.crt"));
-  text.replace(text.find(" 1\n"), 2, " 12");
+  text.replace(text.find(" 2\n"), 2, " 12");
   write_bytes(folder.file("a.crt"), text);
-  EXPECT_NE(refusal([&] { read_material(folder.file("a.crt")); }).find("version 12, this program reads version 1"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal([&] { read_material(folder.file("a.crt")); }).find("version 12, this program reads versions 1 to 2"),
+      std::string::npos);
+}
+
+// Version 1 ends its counts before the number of substitutions.
+TEST(DamagedCrb, VersionOneIsReadAndKnowsNoSubstitutions) {
+  const TemporaryFolder folder;
+  test::MaterialKind kind = small;
+  kind.substitutions = false;
+  const Material material = random_material(3, kind);
+  const std::string path = folder.file("a.crb");
+  write_material(path, material, {.compress = false});
+  std::string bytes = read_bytes(path);
+  CrbHeader header{};
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  header.version = 1;
+  const CrbEntry counts = entry_of(bytes, "counts");
+  bytes.erase(counts.offset + crb_counts_size_1, counts.raw - crb_counts_size_1);
+  header.file_size = bytes.size();
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  for (std::size_t s = 0; s < header.sections; ++s) {
+    auto& entry = reinterpret_cast<CrbEntry*>(bytes.data() + sizeof(CrbHeader))[s];
+    if (entry.offset > counts.offset) {
+      entry.offset -= counts.raw - crb_counts_size_1;
+    } else {
+      entry.raw = entry.stored = crb_counts_size_1;
+    }
+  }
+  reseal(bytes);
+  write_bytes(path, bytes);
+  EXPECT_EQ(difference(read_material(path), material), "");
+
+  write_material(folder.file("a.crt"), material);
+  std::string text = read_bytes(folder.file("a.crt"));
+  text.replace(text.find(" 2\n"), 2, " 1");
+  write_bytes(folder.file("a.crt"), text);
+  EXPECT_EQ(difference(read_material(folder.file("a.crt")), material), "");
+  write_material(folder.file("a.crt"), random_material(3, small));
+  text = read_bytes(folder.file("a.crt"));
+  text.replace(text.find(" 2\n"), 2, " 1");
+  write_bytes(folder.file("a.crt"), text);
+  EXPECT_NE(refusal([&] { read_material(folder.file("a.crt")); }).find("substitutions"), std::string::npos);
 }
 
 TEST(DamagedCrb, AForgedSizeAllocatesNothing) {

@@ -132,7 +132,7 @@ TEST(MaterialFile, SectionsAreListedAndVerticesNotStoredTwice) {
   EXPECT_EQ(names(random_material(1)),
             (Names{"counts", "species", "box", "unit cell", "positions", "atom species", "ids", "scalar names",
                    "scalars", "tetrahedra", "surface", "surface cells", "surface faces", "defects", "vacancies",
-                   "extras", "provenance"}));
+                   "extras", "substitutions", "provenance"}));
   const Names own = names(random_material(1, {.own_vertices = true}));
   EXPECT_NE(std::find(own.begin(), own.end(), "vertices"), own.end());
   EXPECT_NE(std::find(own.begin(), own.end(), "vertex atoms"), own.end());
@@ -189,6 +189,9 @@ TEST(MaterialFile, AMaterialThatCouldNotBeReadBackIsNotWritten) {
   refuses("defect length", [&](Material& m) { m.defects.vacancy.pop_back(); });
   refuses("vacancy species", [&](Material& m) { m.defects.vacancies[0].species = 3; });
   refuses("extra", [&](Material& m) { m.defects.extras[0].atom = 40; });
+  refuses("substitution", [&](Material& m) { m.defects.substitutions[0].atom = 40; });
+  refuses("substitution's species", [&](Material& m) { m.defects.substitutions[0].expected = 3; });
+  refuses("substitution's vacancy", [&](Material& m) { m.defects.substitutions[0].vacancy = 2; });
   EXPECT_THROW(write_material(folder.file("a.vtu"), random_material(1)), UsageError);
 }
 

@@ -72,6 +72,23 @@ inline void expect_extras(const Quantified& q, std::vector<Index> truth, const s
   EXPECT_EQ(found, truth) << what;
 }
 
+// The substitutions are these atoms on sites of these species, and no others; each fills a vacancy of that species and
+// is an extra atom.
+inline void expect_substitutions(const Quantified& q, const Atoms& atoms,
+                                 std::vector<std::pair<Index, std::string>> truth, const std::string& what) {
+  std::sort(truth.begin(), truth.end());
+  std::vector<std::pair<Index, std::string>> found;
+  for (const Substitution& s : q.defects.substitutions) {
+    found.emplace_back(s.atom, atoms.species_table[s.expected].name);
+    ASSERT_LT(s.vacancy, q.defects.vacancies.size()) << what;
+    EXPECT_EQ(q.defects.vacancies[s.vacancy].species, s.expected) << what;
+    EXPECT_TRUE(std::any_of(q.defects.extras.begin(), q.defects.extras.end(), [&](const ExtraAtom& e) {
+      return e.atom == s.atom;
+    })) << what;
+  }
+  EXPECT_EQ(found, truth) << what;
+}
+
 // A periodic block of about `edge` Å along each vector.
 inline Atoms periodic_crystal(const Lattice& lattice, double edge) {
   std::array<int, 3> n;

@@ -80,12 +80,20 @@ TEST(ClusterDefects, HangTogetherThroughPeriodicFaces) {
   }
 }
 
-TEST(ClusterDefects, ForeignAtomOnASiteIsMixed) {
+TEST(ClusterDefects, ForeignAtomOnASiteIsASubstitution) {
   Atoms atoms = cut_block(copper(), 6, 6, 6);
   atoms.species[nearest_atom(atoms, Vec3(3.0) * edge())] = atoms.add_species("Au");
-  const std::vector<DefectCluster> clusters = cluster_defects(material_of(atoms, copper()));
+  std::vector<DefectCluster> clusters = cluster_defects(material_of(atoms, copper()));
+  ASSERT_EQ(clusters.size(), 1u);
+  EXPECT_EQ(clusters[0].kind, DefectKind::substitution);
+  EXPECT_EQ(clusters[0].substitutions, std::vector<Index>{0});
+  // With a vacancy beside it the cluster is both.
+  remove_nearest(atoms, Vec3(3.5, 3.5, 3.0) * edge());
+  clusters = cluster_defects(material_of(atoms, copper()));
   ASSERT_EQ(clusters.size(), 1u);
   EXPECT_EQ(clusters[0].kind, DefectKind::mixed);
+  EXPECT_EQ(clusters[0].vacancies.size(), 2u);
+  EXPECT_EQ(clusters[0].substitutions.size(), 1u);
 }
 
 TEST(ClusterDefects, ScalarFromAFileIsPositional) {
@@ -103,7 +111,8 @@ TEST(ClusterDefects, ScalarFromAFileIsPositional) {
 }
 
 TEST(ClusterDefects, KindsHaveNames) {
-  for (const DefectKind kind : {DefectKind::vacancy, DefectKind::extra, DefectKind::positional, DefectKind::mixed}) {
+  for (const DefectKind kind :
+       {DefectKind::vacancy, DefectKind::extra, DefectKind::positional, DefectKind::mixed, DefectKind::substitution}) {
     EXPECT_EQ(defect_kind_from_name(defect_kind_name(kind)), kind);
   }
   try {

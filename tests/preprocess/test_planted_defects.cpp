@@ -100,6 +100,7 @@ TEST(PlantedDefect, ForeignAtomOnASiteIsAVacancyAndAnExtra) {
       const std::string what = s.name + ", " + species;
       expect_vacancies(q, atoms, {{s.atoms.positions[atom], species}}, exact, what);
       expect_extras(q, {atom}, what);
+      expect_substitutions(q, atoms, {{atom, species}}, what);
       EXPECT_EQ(q.report.positional_atoms, 0u) << what;
       EXPECT_EQ(q.report.vacancy_atoms + 1, q.report.extra_atoms) << what;
     }
@@ -116,6 +117,7 @@ TEST(PlantedDefect, AntisiteIsAVacancyAndAnExtra) {
       const Quantified q = quantify(atoms, s.cell);
       expect_vacancies(q, atoms, {{atoms.positions[atom], species[k]}}, exact, s.name + ", " + species[k]);
       expect_extras(q, {atom}, s.name + ", " + species[k]);
+      expect_substitutions(q, atoms, {{atom, species[k]}}, s.name + ", " + species[k]);
     }
   }
 }
