@@ -31,6 +31,8 @@ struct LatticePatch {
   Vec3 origin{0.0};
   double rms = 0.0, largest = 0.0;           // Å, of the atoms from the fitted sites
   std::array<std::int32_t, 3> min{}, max{};  // cells it spans, both included
+  // Places, out of one for every eighty atoms, where the walk met itself with other numbers; a dislocation has some.
+  std::size_t seams = 0;
 };
 
 struct LatticeSites {
@@ -41,7 +43,8 @@ struct LatticeSites {
 };
 
 struct LatticeSiteOptions {
-  // Å within which an atom occupies the site that its neighbours predict; 0: 0.3 × the nearest-neighbour distance.
+  // Å within which an atom occupies the site that its neighbours predict; 0: 0.3 × the nearest-neighbour distance, and
+  // never more than 0.45 of it.
   double tolerance = 0.0;
   // Patches of fewer atoms are given up; their atoms sit on no site.
   std::size_t smallest_patch = 64;
@@ -53,22 +56,47 @@ struct LatticeSiteOptions {
 // share a site. Where the walk meets itself with other numbers (a dislocation) the atoms stay with the numbers that
 // came first. What it does not reach (a slid layer, another grain) starts a patch of its own. Same result at any number
 // of threads.
+// Throws Error for a position that is not finite and what make_lattice_template throws; a crystal that is not known
+// gives no patches.
 LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, const LatticeSiteOptions& options,
                                   Progress& progress = no_progress());
 
 // Finds the atom on a site. Dense where the patch is compact, hashed where it is not.
 class SiteTable {
  public:
+  // The cells from min to max, `basis` sites each, of which about `atoms` will be taken.
+  SiteTable(const std::array<std::int32_t, 3>& min, const std::array<std::int32_t, 3>& max, std::size_t basis,
+            std::size_t atoms);
   SiteTable(const LatticeSites& sites, std::uint16_t patch);
-  // no_index where no atom sits.
-  Index atom(const std::array<std::int32_t, 3>& cell, std::uint16_t basis) const;
+
+  // no_index where no atom sits; any cell may be asked for.
+  Index atom(const std::array<std::int32_t, 3>& cell, std::uint16_t basis) const {
+    const std::uint64_t key = key_of(cell, basis);
+    if (key == no_key) return no_index;
+    return dense_.empty() ? values_[slot(key)] : dense_[key];
+  }
+  // Puts an atom on a site inside the cells given.
+  void put(const std::array<std::int32_t, 3>& cell, std::uint16_t basis, Index atom);
 
  private:
-  std::array<std::int32_t, 3> min_{}, size_{};
-  std::size_t basis_ = 0;
+  static constexpr std::uint64_t no_key = ~std::uint64_t{0};
+  std::uint64_t key_of(const std::array<std::int32_t, 3>& cell, std::uint16_t basis) const {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::int64_t place = std::int64_t{cell[k]} - min_[k];
+      if (place < 0 || place >= size_[k]) return no_key;
+      key = key * static_cast<std::uint64_t>(size_[k]) + static_cast<std::uint64_t>(place);
+    }
+    return key * basis_ + basis;
+  }
+  std::size_t slot(std::uint64_t key) const;  // where it is, or would be, in keys_
+
+  std::array<std::int64_t, 3> min_{}, size_{};
+  std::uint64_t basis_ = 0;
   std::vector<Index> dense_;
-  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint64_t> keys_;  // hashed, linear probing
   std::vector<Index> values_;
+  std::size_t taken_ = 0;
 };
 
 }  // namespace atomesh

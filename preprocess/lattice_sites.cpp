@@ -1,0 +1,255 @@
+#include "preprocess/lattice_sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "preprocess/lattice_walk.h"
+
+namespace atomesh {
+
+namespace {
+
+constexpr double default_tolerance = 0.3, largest_tolerance = 0.45;  // nearest-neighbour distances
+constexpr std::size_t atoms_per_range = 1 << 15;
+
+LatticeTemplate pattern_of(const UnitCell& given) {
+  check_unit_cell(given);
+  LatticeTemplate pattern;
+  pattern.cell.primitive = reduce_lattice(given.primitive);
+  const Mat3 matrix = pattern.cell.matrix();
+  const Mat3 to_fraction = glm::inverse(matrix);
+  for (std::size_t b = 0; b < given.basis.size(); ++b) {
+    const Vec3 fraction = to_fraction * given.basis[b].position;
+    pattern.cell.basis.push_back(
+        {given.basis[b].species, given.basis[b].position - matrix * glm::floor(fraction + 1e-9)});
+    pattern.given_basis.push_back(static_cast<std::uint16_t>(b));
+  }
+  return pattern;
+}
+
+// Atoms by patch: those of patch p are order[first[p]] … order[first[p + 1] - 1], ascending.
+struct ByPatch {
+  std::vector<std::size_t> first;
+  std::vector<Index> order;
+
+  ByPatch(const std::vector<LatticeSite>& of, std::size_t patches) : first(patches + 1, 0) {
+    for (const LatticeSite& site : of) {
+      if (site.patch != no_patch) ++first[site.patch + 1];
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    order.resize(first.back());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      if (of[i].patch != no_patch) order[next[of[i].patch]++] = static_cast<Index>(i);
+    }
+  }
+  std::span<const Index> atoms(std::size_t patch) const {
+    return std::span<const Index>(order).subspan(first[patch], first[patch + 1] - first[patch]);
+  }
+};
+
+void span_cells(std::span<const Index> atoms, const std::vector<LatticeSite>& of, LatticePatch& patch) {
+  patch.min.fill(std::numeric_limits<std::int32_t>::max());
+  patch.max.fill(std::numeric_limits<std::int32_t>::min());
+  patch.atoms = 0;
+  for (const Index i : atoms) {
+    if (of[i].patch == no_patch) continue;
+    ++patch.atoms;
+    for (int k = 0; k < 3; ++k) {
+      patch.min[k] = std::min(patch.min[k], of[i].cell[k]);
+      patch.max[k] = std::max(patch.max[k], of[i].cell[k]);
+    }
+  }
+}
+
+// Of two atoms on one site the nearer stays, the first of two equally near.
+void part_sharers(std::span<const Index> atoms, const std::vector<float>& squared, const LatticePatch& patch,
+                  std::size_t basis, std::vector<LatticeSite>& of) {
+  SiteTable table(patch.min, patch.max, basis, atoms.size());
+  for (const Index i : atoms) {
+    const LatticeSite site = of[i];
+    const Index other = table.atom(site.cell, site.basis);
+    if (other != no_index && squared[other] <= squared[i]) {
+      of[i] = {};
+      continue;
+    }
+    if (other != no_index) of[other] = {};
+    table.put(site.cell, site.basis, i);
+  }
+}
+
+// Sums over a patch's atoms of labels and offsets, about the middle of the patch.
+struct Moments {
+  double weight = 0.0, squared = 0.0, largest = 0.0;
+  Vec3 s{0.0}, r{0.0};
+  Mat3 ss{0.0}, rs{0.0};
+
+  void add(const Moments& other) {
+    weight += other.weight;
+    squared += other.squared;
+    largest = std::max(largest, other.largest);
+    s += other.s;
+    r += other.r;
+    ss += other.ss;
+    rs += other.rs;
+  }
+};
+
+// Fits the patch's frame: least squares, then again with little weight for what lies further off than most.
+class PatchFit {
+ public:
+  PatchFit(std::span<const Index> atoms, const Atoms& all, const LatticeSites& sites, LatticePatch& patch)
+      : atoms_(atoms),
+        positions_(all.positions),
+        of_(sites.of),
+        fraction_(sites.fractional(patch.pattern)),
+        patch_(patch) {
+    for (int k = 0; k < 3; ++k)
+      middle_[k] = std::floor(0.5 * (static_cast<double>(patch.min[k]) + static_cast<double>(patch.max[k])));
+    patch.matrix = sites.patterns[patch.pattern].cell.matrix();
+    patch.origin = Vec3(0.0);
+  }
+
+  void run() {
+    improve(0.0, true);
+    improve(0.0, false);
+    double scale = 0.0;
+    for (int round = 0; round < 3; ++round) {
+      const Moments now = sum(scale);
+      scale = std::sqrt(now.squared / std::max(now.weight, 1.0));
+      if (scale == 0.0) break;
+      improve(scale, false);
+    }
+    const Moments last = sum(0.0);
+    patch_.rms = std::sqrt(last.squared / last.weight);
+    patch_.largest = std::sqrt(last.largest);
+  }
+
+ private:
+  Moments sum(double scale) const {
+    const std::size_t ranges = (atoms_.size() + atoms_per_range - 1) / atoms_per_range;
+    std::vector<Moments> part(ranges);
+    parallel_for(atoms_.size(), atoms_per_range, [&](std::size_t begin, std::size_t end) {
+      Moments& m = part[begin / atoms_per_range];
+      const double inverse = scale > 0.0 ? 1.0 / (scale * scale) : 0.0;
+      for (std::size_t n = begin; n < end; ++n) {
+        const LatticeSite& site = of_[atoms_[n]];
+        if (site.patch == no_patch) continue;
+        const Vec3 label = Vec3(site.cell[0], site.cell[1], site.cell[2]) + fraction_[site.basis];
+        const Vec3 r = positions_[atoms_[n]] - (patch_.origin + patch_.matrix * label);
+        const Vec3 s = label - middle_;
+        const double squared = glm::dot(r, r);
+        const double lighter = 1.0 + squared * inverse;
+        const double w = 1.0 / (lighter * lighter);
+        m.weight += w;
+        m.squared += w * squared;
+        m.largest = std::max(m.largest, squared);
+        m.s += w * s;
+        m.r += w * r;
+        for (int k = 0; k < 3; ++k) {
+          m.ss[k] += w * s[k] * s;
+          m.rs[k] += w * s[k] * r;
+        }
+      }
+    });
+    Moments all;
+    for (const Moments& m : part) all.add(m);
+    return all;
+  }
+
+  void improve(double scale, bool shift_only) {
+    const Moments m = sum(scale);
+    const Vec3 s = m.s / m.weight;
+    const Vec3 r = m.r / m.weight;
+    Mat3 change(0.0);
+    if (!shift_only) {
+      Mat3 spread = m.ss - m.weight * glm::outerProduct(s, s);
+      // A patch that is flat leaves a direction open; there the cell given stands.
+      const double least = 1e-9 * (spread[0][0] + spread[1][1] + spread[2][2]) + 1e-9;
+      for (int k = 0; k < 3; ++k) spread[k][k] += least;
+      change = (m.rs - m.weight * glm::outerProduct(r, s)) * glm::inverse(spread);
+    }
+    patch_.matrix += change;
+    patch_.origin += r - change * (s + middle_);
+  }
+
+  std::span<const Index> atoms_;
+  const std::vector<Vec3>& positions_;
+  const std::vector<LatticeSite>& of_;
+  std::vector<Vec3> fraction_;
+  LatticePatch& patch_;
+  Vec3 middle_{0.0};
+};
+
+}  // namespace
+
+std::vector<Vec3> LatticeSites::fractional(std::size_t pattern) const {
+  const UnitCell& cell = patterns[pattern].cell;
+  const Mat3 to_fraction = glm::inverse(cell.matrix());
+  std::vector<Vec3> result;
+  for (const BasisAtom& atom : cell.basis) result.push_back(to_fraction * atom.position);
+  return result;
+}
+
+LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, const LatticeSiteOptions& options,
+                                  Progress& progress) {
+  LatticeSites sites;
+  sites.of.resize(atoms.size());
+  if (!crystal.known() || atoms.size() == 0) return sites;
+  std::vector<WalkPattern> walk_patterns;
+  for (const UnitCell& cell : crystal.grains) {
+    sites.patterns.push_back(pattern_of(cell));
+    const UnitCell& reduced = sites.patterns.back().cell;
+    const double nearest = shortest_distance(reduced);
+    const double tolerance = std::min(options.tolerance > 0.0 ? options.tolerance : default_tolerance * nearest,
+                                      largest_tolerance * nearest);
+    walk_patterns.push_back({SiteFinder(reduced, tolerance), reduced, tolerance});
+  }
+
+  std::vector<LatticeWalk::Patch> begun;
+  {
+    LatticeWalk walk(atoms, crystal, walk_patterns, options.smallest_patch, sites.of);
+    begun = walk.run(progress);
+    const ByPatch by_patch(sites.of, begun.size());
+    for (std::size_t p = 0; p < begun.size(); ++p) {
+      progress.check();
+      LatticePatch patch;
+      span_cells(by_patch.atoms(p), sites.of, patch);
+      const std::size_t basis = sites.patterns[begun[p].pattern].cell.basis.size();
+      if (patch.atoms > 0) part_sharers(by_patch.atoms(p), walk.squared(), patch, basis, sites.of);
+    }
+  }
+
+  // Most atoms first; those of small patches are let go.
+  std::vector<std::size_t> count(begun.size(), 0);
+  for (const LatticeSite& site : sites.of) {
+    if (site.patch != no_patch) ++count[site.patch];
+  }
+  std::vector<std::size_t> order;
+  for (std::size_t p = 0; p < begun.size(); ++p) {
+    if (count[p] >= std::max<std::size_t>(options.smallest_patch, 1)) order.push_back(p);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return count[a] > count[b]; });
+  std::vector<std::uint16_t> renamed(begun.size(), no_patch);
+  for (std::size_t n = 0; n < order.size(); ++n) renamed[order[n]] = static_cast<std::uint16_t>(n);
+  for (LatticeSite& site : sites.of) {
+    if (site.patch == no_patch) continue;
+    site.patch = renamed[site.patch];
+    if (site.patch == no_patch) site = {};
+  }
+  const ByPatch by_patch(sites.of, order.size());
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    progress.check();
+    LatticePatch& patch = sites.patches.emplace_back();
+    patch.pattern = begun[order[n]].pattern;
+    patch.seams = begun[order[n]].seams;
+    span_cells(by_patch.atoms(n), sites.of, patch);
+    PatchFit(by_patch.atoms(n), atoms, sites, patch).run();
+  }
+  progress.update(1.0);
+  return sites;
+}
+
+}  // namespace atomesh
