@@ -1,4 +1,6 @@
 // The only file that includes CGAL.
+#include "preprocess/tetrahedralize_cgal.h"
+
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Spatial_sort_traits_adapter_3.h>
@@ -92,6 +94,14 @@ std::vector<Tetrahedron> delaunay_cgal(std::span<const Vec3> points, Progress& p
         {cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(), cell->vertex(3)->info()});
   }
   return tetrahedra;
+}
+
+std::size_t delaunay_cgal_stock(std::span<const Vec3> points) {
+  std::vector<Epick::Point_3> positions;
+  positions.reserve(points.size());
+  for (const Vec3& p : points) positions.emplace_back(p.x, p.y, p.z);
+  const CGAL::Delaunay_triangulation_3<Epick> triangulation(positions.begin(), positions.end());
+  return triangulation.dimension() < 3 ? 0 : triangulation.number_of_finite_cells();
 }
 
 }  // namespace atomesh

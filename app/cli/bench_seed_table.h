@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/json.h"
-#include "app/cli/session.h"
-#include "app/cli/text_table.h"
+#include "app/cli/bench_tools.h"
+#include "samples/samples.h"
 
 namespace atomesh::cli {
 
@@ -15,18 +14,18 @@ struct SeedTableOptions {
   std::size_t atoms = 0;             // of each; 0: the seed's count
   int width = 512;                   // pixels
   int height = 512;
-  int repeats = 3;  // measured runs, after one warm-up
-};
-
-struct BenchResult {
-  TextTable table;
-  std::string caption;  // machine, commit, repeats, what the figures mean
-  Json json;            // {machine, commit, rows}, see design.md
+  int repeats = 3;  // measured runs, after `warm_up` that are not counted
+  int warm_up = 1;
+  bool pictures = true;  // else preprocessing alone
 };
 
 // Preprocessing is timed from the .dat on disk to the .crb on disk; a picture from the material in memory to the pixels
 // (scene, setup and rendering). Samples and files live in a temporary folder that is removed. Throws UsageError for an
-// unknown sample.
-BenchResult bench_seed_table(const SeedTableOptions& options, Session& session);
+// unknown sample. Adds a table and its rows to `result`; at the seed's own sizes, preprocessing is required to be 30
+// times faster than the seed's.
+void bench_seed_table(const SeedTableOptions& options, Session& session, BenchResult& result);
+
+// The names or all ten. Throws UsageError for an unknown one.
+std::vector<SampleInfo> chosen_samples(const std::vector<std::string>& names);
 
 }  // namespace atomesh::cli

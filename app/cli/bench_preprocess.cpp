@@ -1,0 +1,53 @@
+#include "app/cli/bench_preprocess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/cli/machine.h"
+#include "core/error.h"
+
+namespace atomesh::cli {
+
+namespace {
+
+struct Part {
+  const char* name;
+  void (*run)(const PreprocessBench&);
+};
+
+constexpr Part parts[] = {
+    {"tetrahedralize", bench_tetrahedralize},
+    {"quantify_defects", bench_quantify_defects},
+    {"pipeline", bench_pipeline},
+    {"truth", bench_truth},
+};
+
+}  // namespace
+
+std::vector<std::string> preprocess_bench_parts() {
+  std::vector<std::string> names;
+  for (const Part& part : parts) names.emplace_back(part.name);
+  return names;
+}
+
+void bench_preprocess(const PreprocessBenchOptions& options, Session& session, BenchResult& result) {
+  const std::vector<std::string> names = preprocess_bench_parts();
+  for (const std::string& name : options.parts) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::string nearest = nearest_name(name, names);
+    throw UsageError(fmt::format("--part: there is no \"{}\"{}; there are: {}", name,
+                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
+  }
+  for (const Part& part : parts) {
+    const bool wanted = options.parts.empty() ||
+                        std::find(options.parts.begin(), options.parts.end(), part.name) != options.parts.end();
+    if (wanted) part.run({options, session, result});
+  }
+  BenchTable requirements = result.requirements();
+  requirements.caption +=
+      fmt::format(" {}. Commit {}. Made by `atomesh bench preprocess`.", machine_name(), build_commit());
+  result.tables.push_back(std::move(requirements));
+}
+
+}  // namespace atomesh::cli

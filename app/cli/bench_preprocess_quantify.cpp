@@ -1,0 +1,148 @@
+// bench preprocess, part quantify_defects.
+#include <fmt/format.h>
+
+#include "app/cli/bench_lammps.h"
+#include "app/cli/bench_preprocess.h"
+#include "core/parallel.h"
+#include "preprocess/quantify_defects.h"
+#include "samples/planted_crystal.h"
+#include "samples/structure_types.h"
+
+namespace atomesh::cli {
+
+namespace {
+
+struct Crystal26 {
+  const char* structure;
+  double neighbourhood;  // × the conventional cell's edge
+  int neighbours;        // that many atoms lie within it
+  double cna_cutoff;     // × the edge, as LAMMPS's manual gives it
+  int centro;            // neighbours of centro/atom
+};
+
+constexpr Crystal26 crystals[] = {
+    {"fcc", 1.0, 18, 0.8536, 12},
+    {"bcc", 1.4143, 26, 1.207, 8},
+};
+
+class QuantifyTable {
+ public:
+  explicit QuantifyTable(const PreprocessBench& bench) : bench_(bench), lammps_(find_lammps()) {}
+
+  void measure_crystal(const Crystal26& crystal, double noise) {
+    PlantedCrystalOptions planted;
+    planted.structure = crystal.structure;
+    planted.atoms = bench_.atoms(256000);
+    planted.shape = PlantedShape::periodic_block;
+    planted.noise = noise;
+    const Sample sample = make_planted_crystal(planted, bench_.session.progress());
+    name_ = fmt::format("{}, {:g} % noise, {} atoms", crystal.structure, 100.0 * noise, grouped(sample.atoms.size()));
+    atoms_ = sample.atoms.size();
+
+    DefectOptions options;
+    options.neighbourhood = crystal.neighbourhood;
+    const int all = threads();
+    for (const int cores : {1, all}) {
+      set_threads(cores);
+      std::size_t positional = 0;
+      const PeakMemory memory;
+      const Times times = measure(bench_.options.repeats, bench_.session, name_ + ": quantify_defects", [&] {
+        DefectReport report;
+        quantify_defects(sample.atoms, *sample.unit_cell, options, report, bench_.session.progress());
+        positional = report.positional_atoms;
+      });
+      add_ours(crystal, times, cores, memory.grown(), positional);
+      if (all == 1) break;
+    }
+    set_threads(all);
+    add_lammps(crystal, sample);
+  }
+
+  TextTable take() { return std::move(table_); }
+  bool has_lammps() const { return !lammps_.empty(); }
+
+ private:
+  double per_core(double ms, int cores) const { return static_cast<double>(atoms_) / (1e-3 * ms * cores); }
+
+  void add_ours(const Crystal26& crystal, const Times& times, int cores, double bytes, std::size_t positional) {
+    const double rate = per_core(times.median, cores);
+    BenchRow row{"preprocess",
+                 name_,
+                 "quantify_defects",
+                 Json::object({{"threads", cores}, {"neighbours", crystal.neighbours}}),
+                 "",
+                 times,
+                 {},
+                 {},
+                 {}};
+    row.more = {{"atoms", atoms_},
+                {"rate", rate},
+                {"rate_unit", "atoms/s/core"},
+                {"memory_mb", 1e-6 * bytes},
+                {"positional_atoms", positional}};
+    std::string required;
+    if (crystal.neighbours == 26 && atoms_ > 100000) {  // below that, setting up counts
+      row.requirements.push_back({fmt::format("quantify_defects: million atoms/s/core, 26 neighbours, on {}", cores),
+                                  1.0, true, 1e-6 * rate, ""});
+      required = row.requirements[0].text();
+    }
+    bench_.result.add(std::move(row));
+    add_line("quantify_defects", crystal.neighbours, cores, times.median, rate, required);
+  }
+
+  void add_lammps(const Crystal26& crystal, const Sample& sample) {
+    if (lammps_.empty()) return;
+    const double edge = glm::length(sample.unit_cell->primitive[0]);
+    std::string why;
+    bench_.session.progress().stage(name_ + ": LAMMPS");
+    const auto times = time_lammps(lammps_, sample.atoms, crystal.cna_cutoff * edge, crystal.centro,
+                                   std::max(2, bench_.options.repeats), bench_.session, why);
+    if (!times) {
+      table_.row({name_, "LAMMPS: " + why, "", "", "", "", ""});
+      return;
+    }
+    const struct {
+      const char* what;
+      double ms;
+    } lines[] = {{"LAMMPS cna/atom, lists at hand", times->cna_ms},
+                 {"LAMMPS cna/atom, lists built", times->cna_with_lists_ms},
+                 {"LAMMPS centro/atom, lists at hand", times->centro_ms},
+                 {"LAMMPS centro/atom, lists built", times->centro_with_lists_ms}};
+    for (const auto& [what, ms] : lines) {
+      BenchRow row{"preprocess", name_, what, Json::object({{"threads", 1}}), "LAMMPS", Times{ms, ms, ms}, {}, {}, {}};
+      row.more = {{"atoms", atoms_}, {"rate", per_core(ms, 1)}, {"rate_unit", "atoms/s/core"}};
+      bench_.result.add(std::move(row));
+      add_line(what, crystal.centro, 1, ms, per_core(ms, 1), "");
+    }
+  }
+
+  void add_line(const std::string& what, int neighbours, int cores, double ms, double rate,
+                const std::string& required) {
+    table_.row({name_, what, std::to_string(neighbours), std::to_string(cores), milliseconds(ms),
+                fmt::format("{:.2f}", 1e-6 * rate), required});
+  }
+
+  const PreprocessBench& bench_;
+  std::string lammps_;
+  std::string name_;
+  std::size_t atoms_ = 0;
+  TextTable table_{{"crystal", "what", "neighbours", "cores", "ms", "M atoms/s/core", "required"}};
+};
+
+}  // namespace
+
+void bench_quantify_defects(const PreprocessBench& bench) {
+  QuantifyTable table(bench);
+  for (const Crystal26& crystal : crystals) {
+    for (const double noise : {0.0, 0.01}) table.measure_crystal(crystal, noise);
+  }
+  std::string caption =
+      "Periodic blocks, the unit cell given; atoms to defect values and sites, neighbour search included. ";
+  caption += table.has_lammps()
+                 ? "LAMMPS: one process, one thread; what a call costs with its neighbour lists at hand, "
+                   "and with them built anew as every snapshot needs."
+                 : "LAMMPS: not installed (no lmp in PATH).";
+  bench.result.tables.push_back({"Defect quantification", table.take(), std::move(caption)});
+}
+
+}  // namespace atomesh::cli

@@ -1,0 +1,138 @@
+#include "app/cli/bench_tools.h"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "app/cli/machine.h"
+
+namespace atomesh::cli {
+
+namespace {
+
+// A line of /proc/self/status in bytes ("VmHWM:	  1234 kB"); 0 where there is none.
+double status_bytes(std::string_view key) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with(key)) continue;
+    const std::size_t digits = line.find_first_of("0123456789");
+    return digits == std::string::npos ? 0.0 : std::stod(line.substr(digits)) * 1024.0;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+Times times_of(std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  const std::size_t n = ms.size();
+  return {n % 2 == 1 ? ms[n / 2] : 0.5 * (ms[n / 2 - 1] + ms[n / 2]), ms.front(), ms.back()};
+}
+
+PeakMemory::PeakMemory() {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";  // the high-water mark starts again
+  before_ = status_bytes("VmRSS");
+}
+
+double PeakMemory::grown() const {
+  return std::max(0.0, held() - before_);
+}
+
+double PeakMemory::held() const {
+  return status_bytes("VmHWM");
+}
+
+TemporaryFolder::TemporaryFolder()
+    : path_(std::filesystem::temp_directory_path() / ("atomesh-bench-" + std::to_string(getpid()))) {
+  std::filesystem::create_directories(path_);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string short_number(double value) {
+  const double size = std::abs(value);
+  if (!std::isfinite(value)) return "-";
+  if (size >= 999.5) return (value < 0.0 ? "-" : "") + grouped(static_cast<std::uint64_t>(std::llround(size)));
+  if (size != 0.0 && size < 0.001) return fmt::format("{:.1e}", value);
+  return fmt::format("{:.3g}", value);
+}
+
+std::string Requirement::text() const {
+  return fmt::format("required {}{}{}: {}{}{}", at_least ? "" : "at most ", short_number(target), unit,
+                     short_number(measured), unit, met() ? "" : " MISSED");
+}
+
+void BenchResult::add(BenchRow row) {
+  const auto time = [&row](double Times::*member) { return row.times ? Json((*row.times).*member) : Json(); };
+  Json json = Json::object({{"suite", row.suite},
+                            {"case", row.name},
+                            {"what", row.what},
+                            {"settings", std::move(row.settings)},
+                            {"peer", row.peer.empty() ? Json() : Json(row.peer)},
+                            {"ms_median", time(&Times::median)},
+                            {"ms_min", time(&Times::min)},
+                            {"ms_max", time(&Times::max)},
+                            {"max_error", std::move(row.max_error)},
+                            {"rmse", nullptr},
+                            {"psnr", nullptr}});
+  for (auto& [key, value] : row.more) json.set(key, std::move(value));
+  Json requirements = Json::array();
+  for (Requirement& requirement : row.requirements) {
+    requirements.push(Json::object({{"what", requirement.what},
+                                    {requirement.at_least ? "at_least" : "at_most", requirement.target},
+                                    {"measured", requirement.measured},
+                                    {"unit", requirement.unit},
+                                    {"met", requirement.met()}}));
+    required_.emplace_back(row.name, std::move(requirement));
+  }
+  if (!row.requirements.empty()) json.set("requirements", requirements);
+  rows_.push(std::move(json));
+}
+
+Json BenchResult::json() const {
+  return Json::object({{"machine", machine_name()}, {"commit", build_commit()}, {"rows", rows_}});
+}
+
+BenchTable BenchResult::requirements() const {
+  BenchTable result{"Requirements", TextTable({"case", "what", "required", "measured", "met"}), ""};
+  std::size_t met = 0;
+  for (const auto& [name, requirement] : required_) {
+    met += requirement.met() ? 1 : 0;
+    result.table.row({name, requirement.what,
+                      fmt::format("{} {}{}", requirement.at_least ? "at least" : "at most",
+                                  short_number(requirement.target), requirement.unit),
+                      short_number(requirement.measured) + requirement.unit, requirement.met() ? "yes" : "NO"});
+  }
+  result.caption = fmt::format("{} of {} met.", met, required_.size());
+  return result;
+}
+
+std::string BenchResult::text() const {
+  std::string out;
+  for (const BenchTable& table : tables) {
+    if (!table.title.empty()) out += table.title + "\n";
+    out += table.table.text();
+    if (!table.caption.empty()) out += table.caption + "\n";
+    out += "\n";
+  }
+  return out;
+}
+
+std::string BenchResult::markdown() const {
+  std::string out;
+  for (const BenchTable& table : tables) {
+    if (!table.title.empty()) out += "## " + table.title + "\n\n";
+    out += table.table.markdown();
+    if (!table.caption.empty()) out += "\n" + table.caption + "\n";
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace atomesh::cli

@@ -1,0 +1,118 @@
+// What every bench shares: measured times and memory, rows for machines, tables and requirements for people.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/json.h"
+#include "app/cli/session.h"
+#include "app/cli/text_table.h"
+
+namespace atomesh::cli {
+
+struct Times {
+  double median = 0.0;  // ms
+  double min = 0.0;
+  double max = 0.0;
+};
+// Throws nothing for one value; `ms` must not be empty.
+Times times_of(std::vector<double> ms);
+
+// `warm_up` runs that are not counted (caches, first touch of memory), then `repeats` that are. `what` is the stage
+// shown while it goes on.
+Times measure(int repeats, Session& session, const std::string& what, auto&& work, int warm_up = 1) {
+  std::vector<double> ms;
+  for (int run = -warm_up; run < repeats; ++run) {
+    session.progress().stage(what);
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    if (run >= 0) ms.push_back(elapsed.count());
+  }
+  return times_of(std::move(ms));
+}
+
+// The most memory the process holds from construction on: what was freed before is first given back to the system, so
+// that it does not hide what comes (Linux: /proc/self/clear_refs and VmHWM).
+class PeakMemory {
+ public:
+  PeakMemory();
+  // Bytes more than at construction; 0 where the system does not tell.
+  double grown() const;
+  // Bytes in all.
+  double held() const;
+
+ private:
+  double before_ = 0.0;
+};
+
+// Removed with everything in it, whatever happens.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Something that must hold: "required at least 20×: 43×, met".
+struct Requirement {
+  std::string what;  // "times CGAL's sequential Delaunay"
+  double target = 0.0;
+  bool at_least = true;  // else at most
+  double measured = 0.0;
+  std::string unit;  // "×", " MB", "%"
+
+  bool met() const { return at_least ? measured >= target : measured <= target; }
+  std::string text() const;
+};
+
+// One row of the bench's JSON, see design.md; `more` stands beside its keys.
+struct BenchRow {
+  std::string suite, name, what;  // `name` is the key "case"
+  Json settings = Json::object();
+  std::string peer;  // "" for ours alone
+  std::optional<Times> times;
+  Json max_error;  // null where the bench has none
+  std::vector<Json::Member> more;
+  std::vector<Requirement> requirements;
+};
+
+struct BenchTable {
+  std::string title;
+  TextTable table;
+  std::string caption;
+};
+
+// What a suite hands back.
+class BenchResult {
+ public:
+  std::vector<BenchTable> tables;
+
+  void add(BenchRow row);
+  // {machine, commit, rows}.
+  Json json() const;
+  // Every requirement of every row, in one table: what, required, measured, met.
+  BenchTable requirements() const;
+  bool has_requirements() const { return !required_.empty(); }
+  std::string text() const;
+  std::string markdown() const;
+
+ private:
+  Json rows_ = Json::array();
+  std::vector<std::pair<std::string, Requirement>> required_;  // by case
+};
+
+// About three significant digits: "0.042", "8.31", "1,234".
+std::string short_number(double value);
+
+}  // namespace atomesh::cli

@@ -1,0 +1,108 @@
+// bench preprocess at tiny sizes: every part runs, and its rows say what machines read.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/app/program.h"
+
+namespace atomesh::testing {
+namespace {
+
+using nlohmann::json;
+
+class Bench : public ::testing::Test {
+ protected:
+  // The rows of one part, each with the keys every row has.
+  json rows(const std::string& part, const std::string& atoms, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"bench", "preprocess", "--part", part, "--atoms", atoms, "--json", "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = place.run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    json bench = json::parse(outcome.out, nullptr, false);
+    EXPECT_FALSE(bench.is_discarded()) << outcome.out;
+    EXPECT_TRUE(bench.contains("machine") && bench.contains("commit"));
+    EXPECT_GT(bench["rows"].size(), 0U);
+    for (const json& row : bench["rows"]) {
+      for (const char* key : {"suite", "case", "what", "settings", "peer", "ms_median", "ms_min", "ms_max", "max_error",
+                              "rmse", "psnr"}) {
+        EXPECT_TRUE(row.contains(key)) << key << " in " << row.dump(1);
+      }
+      if (row["ms_median"].is_number()) {
+        EXPECT_LE(row["ms_min"], row["ms_median"]);
+        EXPECT_LE(row["ms_median"], row["ms_max"]);
+      }
+      if (row.contains("rate")) {
+        EXPECT_TRUE(row.contains("rate_unit")) << row.dump(1);
+      }
+      if (!row.contains("requirements")) continue;
+      for (const json& requirement : row["requirements"]) {
+        EXPECT_TRUE(requirement["met"].is_boolean());
+        EXPECT_TRUE(requirement["measured"].is_number());
+        EXPECT_NE(requirement.contains("at_least"), requirement.contains("at_most"));
+      }
+    }
+    return bench["rows"];
+  }
+
+  Workplace place;
+};
+
+TEST_F(Bench, MeshersAreSoundAndBesideCgal) {
+  std::set<std::string> meshers;
+  for (const json& row : rows("tetrahedralize", "1000", {"--markdown", "bench.md"})) {
+    meshers.insert(row["what"]);
+    EXPECT_GT(row["tetrahedra"], 3000U);
+    EXPECT_TRUE(row.contains("bytes_per_tetrahedron"));
+    if (!row.contains("valid")) continue;
+    EXPECT_TRUE(row["valid"]) << row.dump(1);
+    EXPECT_TRUE(row["delaunay"]) << row.dump(1);
+    EXPECT_LE(row["max_error"], 1e-6);
+  }
+  EXPECT_TRUE(meshers.contains("tetrahedralize: CGAL Delaunay_triangulation_3"));
+  EXPECT_TRUE(meshers.contains("tetrahedralize: delaunay"));
+  EXPECT_NE(place.read("bench.md").find("| crystal | mesher |"), std::string::npos);
+}
+
+TEST_F(Bench, DefectValuesAreTimedOnOneCoreAndOnAll) {
+  std::set<int> neighbours;
+  for (const json& row : rows("quantify_defects", "1000")) {
+    if (row["what"] != "quantify_defects") continue;
+    neighbours.insert(row["settings"]["neighbours"].get<int>());
+    EXPECT_EQ(row["rate_unit"], "atoms/s/core");
+  }
+  EXPECT_EQ(neighbours, (std::set<int>{18, 26}));
+}
+
+TEST_F(Bench, AFileIsTimedStageByStage) {
+  const json all = rows("pipeline", "4000");
+  std::set<std::string> stages;
+  for (const json& stage : all[0]["stages"]) stages.insert(stage["name"]);
+  for (const char* stage : {"read_atoms", "tetrahedralize", "quantify_defects", "write_crb"}) {
+    EXPECT_TRUE(stages.contains(stage)) << stage;
+  }
+  EXPECT_GT(all[0]["memory_mb"], 1.0);
+  EXPECT_EQ(all[1]["suite"], "seed-table");
+}
+
+TEST_F(Bench, PlantedTruthIsFound) {
+  std::size_t levels = 0;
+  for (const json& row : rows("truth", "10000")) {
+    if (!row.contains("requirements")) {
+      EXPECT_GT(row["vacancies"]["planted"], 0U);
+      continue;
+    }
+    ++levels;
+    for (const json& requirement : row["requirements"]) EXPECT_TRUE(requirement["met"]) << row.dump(1);
+  }
+  EXPECT_EQ(levels, 2U);  // without noise, and 1 %
+}
+
+TEST_F(Bench, UnknownPartsAreRefusedWithTheNearest) {
+  const Outcome outcome = place.run({"bench", "preprocess", "--part", "tetrahedralise"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("did you mean \"tetrahedralize\"?"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace atomesh::testing
