@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -30,7 +31,7 @@ struct Image {
 // 8-bit RGB, or RGBA where a pixel is not opaque, channels rounded to the nearest of 256; `text` becomes iTXt chunks
 // (the parameters that made the picture). Written beside and renamed. Throws Error when it cannot be written.
 void write_png(const std::string& path, const Image& image,
-               const std::vector<std::pair<std::string, std::string>>& text = {});
+               const std::vector<std::pair<std::string, std::string>>& text = {}, Progress& progress = no_progress());
 // Any PNG of 8 or 16 bits, gray, palette or colour. Throws InputError for anything else, truncated or damaged files.
 Image read_png(const std::string& path);
 // The same from bytes in memory; `name` stands for the file in messages.

@@ -145,14 +145,17 @@ struct PngWriter {
 };
 
 bool write_all(PngWriter& writer, std::FILE* stream, int width, int height, int color_type, png_textp text,
-               int text_count, png_bytepp rows) {
+               int text_count, png_bytepp rows, Progress& progress) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
   png_init_io(writer.png, stream);
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
                color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   if (text_count > 0) png_set_text(writer.png, writer.info, text, text_count);
   png_write_info(writer.png, writer.info);
-  png_write_image(writer.png, rows);
+  for (int y = 0; y < height; ++y) {
+    progress.check();  // throws from here, where no frame of libpng is on the stack
+    png_write_row(writer.png, rows[y]);
+  }
   png_write_end(writer.png, writer.info);
   return true;
 }
@@ -165,7 +168,7 @@ png_byte to_byte(float channel) {
 }  // namespace
 
 void write_png(const std::string& path, const Image& image,
-               const std::vector<std::pair<std::string, std::string>>& text) {
+               const std::vector<std::pair<std::string, std::string>>& text, Progress& progress) {
   if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side) {
     throw Error(path + ": a picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
                 " pixels cannot be written as PNG (each side 1 to 65535)");
@@ -179,6 +182,7 @@ void write_png(const std::string& path, const Image& image,
   std::vector<png_byte> data(image.pixels.size() * 4);
   bool opaque = true;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (i % 65536 == 0) progress.check();
     for (int c = 0; c < 4; ++c) data[4 * i + static_cast<std::size_t>(c)] = to_byte(image.pixels[i][c]);
     opaque = opaque && data[4 * i + 3] == 255;
   }
@@ -206,7 +210,7 @@ void write_png(const std::string& path, const Image& image,
   AtomicFile file(path);
   PngWriter writer;
   if (!write_all(writer, file.stream(), image.width, image.height, opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA,
-                 chunks.data(), static_cast<int>(chunks.size()), rows.data())) {
+                 chunks.data(), static_cast<int>(chunks.size()), rows.data(), progress)) {
     throw Error(path + ": the PNG cannot be written: " + writer.complaint.text);
   }
   file.commit();

@@ -1,13 +1,19 @@
 #include "core/surface.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "core/compensated_sum.h"
+#include "core/parallel.h"
+#include "core/shared_faces.h"
 
 namespace atomesh {
 
 namespace {
+
+constexpr std::size_t items_per_check = 1 << 14;
 
 // Twice the triangle's area along its outward normal.
 Vec3 area_vector(const Triangle& t, std::span<const Vec3> vertices) {
@@ -22,13 +28,35 @@ Vec3 normalized_or_zero(const Vec3& v) {
 
 }  // namespace
 
-Surface extract_surface(const TetMesh& mesh) {
+Surface extract_surface(const TetMesh& mesh, Progress& progress) {
+  const std::size_t count = mesh.tetrahedra.size();
+  std::vector<std::uint8_t> outside(count, 0);  // bit f: no tetrahedron beyond face f
+  {
+    const SharedFaces faces(mesh, progress);
+    progress.update(0.3);
+    faces.for_each(
+        [&](std::size_t, Index v, std::span<const FaceEntry> sharing) {
+          require_at_most_two(v, sharing);
+          if (sharing.size() == 2) return;
+          // The tetrahedron's other faces may be in another thread's hands.
+          std::atomic_ref(outside[sharing[0].tetrahedron])
+              .fetch_or(static_cast<std::uint8_t>(1U << sharing[0].face), std::memory_order_relaxed);
+        },
+        progress);
+  }
+  progress.update(0.9);
+  std::size_t triangles = 0;
+  for (const std::uint8_t bits : outside) triangles += static_cast<std::size_t>(std::popcount(bits));
   Surface surface;
-  const auto neighbours = face_neighbours(mesh);
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+  surface.triangles.reserve(triangles);
+  surface.tetrahedron.reserve(triangles);
+  surface.face.reserve(triangles);
+  for (std::size_t t = 0; t < count; ++t) {
+    if (t % items_per_check == 0) progress.check();
+    if (outside[t] == 0) continue;
     const Tetrahedron& tet = mesh.tetrahedra[t];
     for (int f = 0; f < 4; ++f) {
-      if (neighbours[t][f] != no_index) continue;
+      if ((outside[t] >> f & 1) == 0) continue;
       surface.triangles.push_back({tet[face_corners[f][0]], tet[face_corners[f][1]], tet[face_corners[f][2]]});
       surface.tetrahedron.push_back(static_cast<Index>(t));
       surface.face.push_back(static_cast<std::uint8_t>(f));
@@ -79,28 +107,47 @@ double enclosed_volume(const Surface& surface, std::span<const Vec3> vertices) {
   return sum.value();
 }
 
-bool is_closed(const Surface& surface) {
-  // Every directed edge, filed as (smaller, larger) with +1 for one sense and -1 for the other.
-  std::vector<std::pair<std::uint64_t, int>> edges;
-  edges.reserve(3 * surface.triangles.size());
-  for (const Triangle& t : surface.triangles) {
-    for (int i = 0; i < 3; ++i) {
-      const std::uint64_t a = t[i];
-      const std::uint64_t b = t[(i + 1) % 3];
-      edges.emplace_back(std::min(a, b) << 32 | std::max(a, b), a < b ? 1 : -1);
+bool is_closed(const Surface& surface, Progress& progress) {
+  // Every directed edge, filed under its smaller vertex as twice the larger one, and one more for the sense from large
+  // to small.
+  Index largest = 0;
+  for (const Triangle& t : surface.triangles) largest = std::max({largest, t[0], t[1], t[2]});
+  const auto for_each_edge = [&](auto&& visit) {
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      if (i % items_per_check == 0) progress.check();
+      const Triangle& t = surface.triangles[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = t[k];
+        const Index b = t[(k + 1) % 3];
+        visit(std::min(a, b), 2 * std::uint64_t{std::max(a, b)} + (a > b ? 1 : 0));
+      }
     }
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    int balance = 0;
-    const std::uint64_t edge = edges[i].first;
-    for (; i < edges.size() && edges[i].first == edge; ++i) balance += edges[i].second;
-    if (balance != 0) return false;
-  }
-  return true;
+  };
+  std::vector<std::uint64_t> first(std::size_t{largest} + 3, 0);
+  for_each_edge([&](Index smaller, std::uint64_t) { ++first[std::size_t{smaller} + 2]; });
+  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<std::uint64_t> edges(3 * surface.triangles.size());
+  for_each_edge([&](Index smaller, std::uint64_t edge) { edges[first[std::size_t{smaller} + 1]++] = edge; });
+
+  std::atomic<bool> closed{true};
+  parallel_for(std::size_t{largest} + 1, items_per_check, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto from = edges.begin() + static_cast<std::ptrdiff_t>(first[v]);
+      const auto to = edges.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
+      std::sort(from, to);
+      for (auto i = from; i != to;) {
+        const std::uint64_t other = *i / 2;
+        int balance = 0;
+        for (; i != to && *i / 2 == other; ++i) balance += *i % 2 == 0 ? 1 : -1;
+        if (balance != 0) closed = false;
+      }
+    }
+  });
+  return closed;
 }
 
-std::vector<std::string> validate(const Surface& surface, const TetMesh& mesh, std::size_t limit) {
+std::vector<std::string> validate(const Surface& surface, const TetMesh& mesh, std::size_t limit, Progress& progress) {
   std::vector<std::string> found;
   const auto complain = [&](std::string complaint) {
     if (found.size() < limit) found.push_back(std::move(complaint));
@@ -111,6 +158,7 @@ std::vector<std::string> validate(const Surface& surface, const TetMesh& mesh, s
     return found;
   }
   for (std::size_t i = 0; i < count && found.size() < limit; ++i) {
+    if (i % items_per_check == 0) progress.check();
     const std::string triangle = "triangle " + std::to_string(i);
     const Index t = surface.tetrahedron[i];
     const int f = surface.face[i];
@@ -127,9 +175,9 @@ std::vector<std::string> validate(const Surface& surface, const TetMesh& mesh, s
     std::swap(corners[1], corners[2]);
     complain(triangle + (corners == expected ? " points inward" : " is not the face it names"));
   }
-  if (!is_closed(surface)) complain("the surface is not closed");
+  if (!is_closed(surface, progress)) complain("the surface is not closed");
   if (found.empty()) {
-    const Surface boundary = extract_surface(mesh);
+    const Surface boundary = extract_surface(mesh, progress);
     std::vector<std::uint64_t> have, want;
     for (std::size_t i = 0; i < count; ++i) have.push_back(std::uint64_t{surface.tetrahedron[i]} * 4 + surface.face[i]);
     for (std::size_t i = 0; i < boundary.triangles.size(); ++i) {

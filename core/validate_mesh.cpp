@@ -2,12 +2,15 @@
 #include <cmath>
 
 #include "core/circumsphere.h"
+#include "core/error.h"
 #include "core/predicates.h"
 #include "core/tet_mesh.h"
 
 namespace atomesh {
 
 namespace {
+
+constexpr std::size_t tetrahedra_per_check = 1 << 14;
 
 // Collects complaints; full() once there are enough.
 class Complaints {
@@ -50,9 +53,10 @@ void check_vertices(const TetMesh& mesh, Complaints& complaints) {
 }
 
 // False when the indices are such that geometry cannot be looked at.
-bool check_indices(const TetMesh& mesh, Complaints& complaints) {
+bool check_indices(const TetMesh& mesh, Complaints& complaints, Progress& progress) {
   bool usable = true;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (t % tetrahedra_per_check == 0) progress.check();
     Tetrahedron sorted = mesh.tetrahedra[t];
     std::sort(sorted.begin(), sorted.end());
     if (sorted[3] >= mesh.vertices.size()) {
@@ -86,15 +90,18 @@ bool deep_inside(const Sphere& sphere, const Vec3& p) {
   return sphere.radius - glm::length(p - sphere.center) > delaunay_tolerance * sphere.radius;
 }
 
-void check_faces(const TetMesh& mesh, Complaints& complaints) {
+void check_faces(const TetMesh& mesh, Complaints& complaints, Progress& progress) {
   std::vector<std::array<Index, 4>> neighbours;
   try {
-    neighbours = face_neighbours(mesh);
+    neighbours = face_neighbours(mesh, progress);
+  } catch (const CancelledError&) {
+    throw;
   } catch (const std::exception& error) {
     complaints.add(error.what());
     return;
   }
   for (std::size_t t = 0; t < mesh.tetrahedra.size() && !complaints.full(); ++t) {
+    if (t % tetrahedra_per_check == 0) progress.check();
     const Tetrahedron& tet = mesh.tetrahedra[t];
     for (int f = 0; f < 4; ++f) {
       const Index other = neighbours[t][f];
@@ -118,18 +125,19 @@ void check_faces(const TetMesh& mesh, Complaints& complaints) {
 
 }  // namespace
 
-std::vector<std::string> validate(const TetMesh& mesh, std::size_t limit) {
+std::vector<std::string> validate(const TetMesh& mesh, std::size_t limit, Progress& progress) {
   Complaints complaints(limit);
   check_vertices(mesh, complaints);
-  if (!check_indices(mesh, complaints)) return complaints.take();
+  if (!check_indices(mesh, complaints, progress)) return complaints.take();
   for (std::size_t t = 0; t < mesh.tetrahedra.size() && !complaints.full(); ++t) {
+    if (t % tetrahedra_per_check == 0) progress.check();
     const auto& [a, b, c, d] = mesh.tetrahedra[t];
     const int sign = orientation(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], mesh.vertices[d]);
     if (sign == 0) complaints.add(name("tetrahedron", t) + " is flat");
     if (sign < 0) complaints.add(name("tetrahedron", t) + " is inverted");
   }
   // Flat and inverted tetrahedra would only repeat themselves as faults of their faces.
-  if (complaints.none()) check_faces(mesh, complaints);
+  if (complaints.none()) check_faces(mesh, complaints, progress);
   return complaints.take();
 }
 

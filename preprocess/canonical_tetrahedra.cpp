@@ -17,18 +17,26 @@ Tetrahedron canonical(Tetrahedron t) {
   return t;
 }
 
-void put_in_canonical_order(std::vector<Tetrahedron>& tetrahedra, std::size_t vertices) {
-  std::vector<std::size_t> first(vertices + 1, 0);  // of each vertex's tetrahedra, filed under their smallest vertex
-  for (Tetrahedron& t : tetrahedra) {
-    t = canonical(t);
-    ++first[t[0] + 1];
+void put_in_canonical_order(std::vector<Tetrahedron>& tetrahedra, std::size_t vertices, Progress& progress) {
+  constexpr std::size_t tetrahedra_per_range = 1 << 14;
+  const std::size_t count = tetrahedra.size();
+  parallel_for(count, tetrahedra_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    for (std::size_t i = begin; i < end; ++i) tetrahedra[i] = canonical(tetrahedra[i]);
+  });
+  // Of each vertex's tetrahedra, filed under their smallest vertex; counted two places ahead, so that filling moves
+  // each start to where it belongs.
+  std::vector<std::size_t> first(vertices + 2, 0);
+  for (const Tetrahedron& t : tetrahedra) ++first[std::size_t{t[0]} + 2];
+  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<Tetrahedron> ordered(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % tetrahedra_per_range == 0) progress.check();
+    ordered[first[std::size_t{tetrahedra[i][0]} + 1]++] = tetrahedra[i];
   }
-  for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
-  std::vector<Tetrahedron> ordered(tetrahedra.size());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (const Tetrahedron& t : tetrahedra) ordered[next[t[0]]++] = t;
   constexpr std::size_t vertices_per_range = 4096;
   parallel_for(vertices, vertices_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     for (std::size_t v = begin; v < end; ++v) {
       std::sort(ordered.begin() + static_cast<std::ptrdiff_t>(first[v]),
                 ordered.begin() + static_cast<std::ptrdiff_t>(first[v + 1]));

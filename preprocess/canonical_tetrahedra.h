@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -11,7 +12,8 @@ namespace atomesh {
 // kept.
 Tetrahedron canonical(Tetrahedron tetrahedron);
 
-// Canonical tetrahedra in lexicographic order. Indices are below `vertices`.
-void put_in_canonical_order(std::vector<Tetrahedron>& tetrahedra, std::size_t vertices);
+// Canonical tetrahedra in lexicographic order. Indices are below `vertices`. Takes 16 bytes a tetrahedron.
+void put_in_canonical_order(std::vector<Tetrahedron>& tetrahedra, std::size_t vertices,
+                            Progress& progress = no_progress());
 
 }  // namespace atomesh

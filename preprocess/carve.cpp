@@ -12,7 +12,7 @@ namespace atomesh {
 
 namespace {
 
-constexpr std::size_t tetrahedra_per_range = 1 << 14;
+constexpr std::size_t tetrahedra_per_range = 1 << 14;  // and per look whether to cancel
 
 std::vector<double> circumradii(const TetMesh& mesh, Progress& progress) {
   std::vector<double> radii(mesh.tetrahedra.size());
@@ -41,11 +41,12 @@ struct Surroundings {
   std::vector<double> largest_void;
 };
 
-Surroundings look_around(const TetMesh& mesh, const std::vector<double>& radii) {
+Surroundings look_around(const TetMesh& mesh, const std::vector<double>& radii, Progress& progress) {
   const double none = std::numeric_limits<double>::infinity();
   std::vector<double> nearest(mesh.vertices.size(), none);
   std::vector<double> largest(mesh.vertices.size(), 0.0);
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (t % tetrahedra_per_range == 0) progress.check();
     const Tetrahedron& tet = mesh.tetrahedra[t];
     for (int i = 0; i < 4; ++i) {
       largest[tet[i]] = std::max(largest[tet[i]], radii[t]);
@@ -65,7 +66,7 @@ Surroundings look_around(const TetMesh& mesh, const std::vector<double>& radii) 
 
 }  // namespace
 
-TetMesh carve(const TetMesh& mesh, const CarveOptions& options, CarveReport& report, Progress& progress) {
+TetMesh carve(TetMesh mesh, const CarveOptions& options, CarveReport& report, Progress& progress) {
   if (!(options.radius >= 0.0) || !std::isfinite(options.radius)) {
     throw UsageError("the carving radius must be a length in Å, or 0 for automatic; got " +
                      std::to_string(options.radius));
@@ -73,28 +74,27 @@ TetMesh carve(const TetMesh& mesh, const CarveOptions& options, CarveReport& rep
   report = {};
   const std::vector<double> radii = circumradii(mesh, progress);
   progress.update(0.6);
-  Surroundings around = look_around(mesh, radii);
+  Surroundings around = look_around(mesh, radii, progress);
   report.nearest_neighbour = quantile(std::move(around.nearest), 0.5);
   report.radius = options.radius > 0.0 ? options.radius
                                        : std::min(carve_void_factor * quantile(std::move(around.largest_void), 0.25),
                                                   carve_neighbour_factor * report.nearest_neighbour);
   progress.update(0.8);
 
-  TetMesh carved;
-  carved.vertices = mesh.vertices;
-  carved.vertex_atom = mesh.vertex_atom;
-  carved.delaunay = mesh.delaunay;
-  carved.tetrahedra.reserve(mesh.tetrahedra.size());
+  // In place: the mesh may be most of what the process holds.
   std::vector<bool> used(mesh.vertices.size(), false);
+  std::size_t kept = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (t % tetrahedra_per_range == 0) progress.check();
     if (radii[t] > report.radius) continue;
-    carved.tetrahedra.push_back(mesh.tetrahedra[t]);
+    mesh.tetrahedra[kept++] = mesh.tetrahedra[t];
     for (const Index v : mesh.tetrahedra[t]) used[v] = true;
   }
-  report.removed = mesh.tetrahedra.size() - carved.tetrahedra.size();
+  report.removed = mesh.tetrahedra.size() - kept;
+  mesh.tetrahedra.resize(kept);
   report.bare_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
   progress.update(1.0);
-  return carved;
+  return mesh;
 }
 
 }  // namespace atomesh

@@ -20,8 +20,8 @@ struct CarveReport {
 // Alpha criterion on the Delaunay mesh (Edelsbrunner & Mücke 1994, doi 10.1145/174462.156635); what encloses nothing
 // but empty space goes, whether it is open to the outside or not. Keeps the order of what stays, the vertices and
 // TetMesh::delaunay. Throws UsageError for a radius that is negative or not finite.
-TetMesh carve(const TetMesh& mesh, const CarveOptions& options, CarveReport& report,
-              Progress& progress = no_progress());
+// Takes 8 bytes a tetrahedron beside a mesh that is moved in.
+TetMesh carve(TetMesh mesh, const CarveOptions& options, CarveReport& report, Progress& progress = no_progress());
 
 // The automatic radius, from what the sample's own packing leaves empty. Each vertex's void is the largest
 // circumsphere of its tetrahedra; where the packing is whole that is the crystal's largest interstice (0.71 nearest-

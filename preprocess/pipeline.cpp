@@ -140,17 +140,17 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
       report.notes.emplace_back(
           "nothing was carved: the sample was thinned out, so no radius can be told from it; give one with --carve");
     } else if (options.carve) {
-      material.mesh =
-          stage("carve", [&] { return carve(material.mesh, options.carve_options, report.carve, progress); });
+      material.mesh = stage(
+          "carve", [&] { return carve(std::move(material.mesh), options.carve_options, report.carve, progress); });
     }
     if (wanted.surface) {
-      material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh); });
+      material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh, progress); });
     }
     stage("measure", [&] {
-      report.volume = volume(material.mesh);
-      report.min_dihedral_deg = min_dihedral_degrees(material.mesh);
+      report.volume = volume(material.mesh, progress);
+      report.min_dihedral_deg = min_dihedral_degrees(material.mesh, progress);
       report.surface_area = area(material.surface, material.mesh.vertices);
-      report.surface_closed = is_closed(material.surface);
+      report.surface_closed = is_closed(material.surface, progress);
     });
   }
 

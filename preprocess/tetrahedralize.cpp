@@ -23,12 +23,13 @@ std::uint64_t hash(const Vec3& p) {
 }
 
 // Gives every distinct position a vertex that names its first atom, in the atoms' order.
-void make_vertices(const Atoms& atoms, TetMesh& mesh) {
+void make_vertices(const Atoms& atoms, TetMesh& mesh, Progress& progress) {
   const std::size_t slots = std::bit_ceil(2 * atoms.size() + 1);
   std::vector<Index> table(slots, no_index);  // open addressing → vertex
   mesh.vertices.reserve(atoms.size());
   mesh.vertex_atom.reserve(atoms.size());
   for (std::size_t i = 0; i < atoms.size(); ++i) {
+    if (i % 65536 == 0) progress.check();
     const Vec3& p = atoms.positions[i];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       throw Error("atom " + std::to_string(i) + " has a position that is not finite; it cannot be meshed");
@@ -63,7 +64,7 @@ TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options,
 
   TetMesh mesh;
   mesh.delaunay = true;
-  make_vertices(atoms, mesh);
+  make_vertices(atoms, mesh, progress);
   report.merged_vertices = atoms.size() - mesh.vertices.size();
 
   if (options.mesher == "tetgen") {
@@ -78,7 +79,7 @@ TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options,
     mesh.tetrahedra = delaunay_cgal(mesh.vertices, progress);
   }
   report.slivers_removed = remove_slivers(mesh.tetrahedra, mesh.vertices);
-  put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size());
+  put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size(), progress);
   progress.update(1.0);
   return mesh;
 }

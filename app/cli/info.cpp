@@ -58,9 +58,10 @@ std::size_t memory_of(const Material& m) {
   return bytes + bytes_of(m.defects.vacancies) + bytes_of(m.defects.extras) + bytes_of(m.defects.substitutions);
 }
 
-std::vector<std::string> problems_of(const Material& material) {
-  std::vector<std::string> problems = validate(material.mesh);
-  for (std::string& problem : validate(material.surface, material.mesh)) problems.push_back(std::move(problem));
+std::vector<std::string> problems_of(const Material& material, Progress& progress) {
+  std::vector<std::string> problems = validate(material.mesh, 10, progress);
+  for (std::string& problem : validate(material.surface, material.mesh, 10, progress))
+    problems.push_back(std::move(problem));
   return problems;
 }
 
@@ -155,7 +156,7 @@ int run_info(const InfoArguments& arguments, const CLI::App& app, Session& sessi
   const std::string kind = kind_of(arguments.input, loaded);
   const std::vector<SectionInfo> sections = kind == "crb" ? list_sections(arguments.input) : std::vector<SectionInfo>();
   session.progress().stage("validate");
-  const std::vector<std::string> problems = problems_of(material);
+  const std::vector<std::string> problems = problems_of(material, session.progress());
   print_info(arguments, loaded, sections, problems, session);
 
   if (session.json_wanted()) {

@@ -139,8 +139,9 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   const Camera camera = make_camera(parameters, scene.bounds, width, height);
   RenderStats stats;
   const Image image = render(renderer, scene, camera, parameters, stats, channel_files.channels(), session.progress());
-  session.progress().check();
-  write_png(arguments.output, image, picture_text(arguments, parameters, loaded.material, renderer.name()));
+  session.progress().stage("write_picture");
+  write_png(arguments.output, image, picture_text(arguments, parameters, loaded.material, renderer.name()),
+            session.progress());
   channel_files.write(width, height);
   const double total_ms = elapsed_since(start);
 
