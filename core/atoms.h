@@ -64,6 +64,7 @@ struct ReadReport {
   std::size_t frames = 1;      // frames in the file
   std::size_t frame = 0;       // the one read, from 0
   std::uint64_t bytes = 0;
+  std::string hash;                // of the file's content, see content_hash.h
   std::vector<std::string> notes;  // one sentence each, for a person
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "preprocess/memory_needs.h"
+
 namespace atomesh::reading {
 
 bool parse_logical(std::string_view field, bool& value) {
@@ -20,6 +22,10 @@ void AtomRows::prepare(std::size_t count, std::uint64_t line, std::size_t bytes_
   // to the line that lacks fields to say so.
   const std::size_t min_bytes = std::max<std::size_t>(1, fields_.size() / 2);
   checked_count(input_, line, static_cast<std::int64_t>(count), bytes_left, min_bytes, "atom");
+  const std::size_t columns = atoms_.columns.size();
+  bool ids = false;
+  for (const Field& field : fields_) ids = ids || field.role == Role::id;
+  require_memory_for(input_.path + ": reading", count, "atoms", memory_to_read(count, columns + (ids ? 1 : 0), ids));
   atoms_.positions.resize(count);
   atoms_.species.resize(count);
   for (const Field& field : fields_) {

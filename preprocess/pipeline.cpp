@@ -4,43 +4,57 @@
 
 #include <chrono>
 #include <filesystem>
+#include <new>
 #include <optional>
 #include <type_traits>
 #include <utility>
 
+#include "core/content_hash.h"
+#include "core/error.h"
+#include "core/memory.h"
 #include "core/surface.h"
 #include "preprocess/assign_scalar.h"
+#include "preprocess/memory_needs.h"
 
 namespace atomesh {
 
 namespace {
 
-// Runs the stages of one pipeline: announces each to the progress (where a cancel takes effect) and writes down how
-// long it took.
+// Runs the stages of one pipeline: announces each to the progress (where a cancel takes effect), and writes down how
+// long it took and how much memory was held.
 class StageClock {
  public:
-  StageClock(std::vector<StageTime>& times, Progress& progress) : times_(times), progress_(progress) {}
+  StageClock(std::vector<StageTime>& times, std::vector<std::uint64_t>& memory, Progress& progress)
+      : times_(times), memory_(memory), progress_(progress) {}
 
   template <class Work>
   auto operator()(const char* name, Work&& work) {
     progress_.stage(name);
+    reset_peak_memory();
     const auto start = std::chrono::steady_clock::now();
     const auto stop = [&] {
       const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
       times_.push_back({name, elapsed.count()});
+      memory_.push_back(recent_peak_memory());
+      release_free_memory();
     };
-    if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
-      work();
-      stop();
-    } else {
-      auto result = work();
-      stop();
-      return result;
+    try {
+      if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+        work();
+        stop();
+      } else {
+        auto result = work();
+        stop();
+        return result;
+      }
+    } catch (const std::bad_alloc&) {
+      throw UnavailableError(std::string(name) + ": the memory ran out; " + memory_advice());
     }
   }
 
  private:
   std::vector<StageTime>& times_;
+  std::vector<std::uint64_t>& memory_;
   Progress& progress_;
 };
 
@@ -67,25 +81,10 @@ std::string joined(const std::vector<std::string>& words) {
 void describe(const std::string& path, const PipelineOptions& options, const PipelineReport& report,
               Material& material) {
   Provenance& provenance = material.provenance;
-  provenance.program = "atomesh " ATOMESH_VERSION;
+  provenance.program = program_version();
   provenance.input = std::filesystem::path(path).filename().string();
-  provenance.options = {
-      {"format", report.read.format},
-      {"frame", std::to_string(options.read.frame)},
-      {"type_names", joined(options.read.type_names)},
-      {"mask", joined(options.reduce.mask)},
-      {"keep_every", std::to_string(options.reduce.keep_every)},
-      {"transition_distance", fmt::format("{}", options.reduce.transition_distance)},
-      {"boundary_distance", fmt::format("{}", options.reduce.boundary_distance)},
-      {"mesher", options.tetrahedralize.mesher},
-      {"carve", !options.carve                       ? "off"
-                : options.carve_options.radius > 0.0 ? fmt::format("{}", options.carve_options.radius)
-                                                     : "auto"},
-      {"unit_cell", options.unit_cell},
-      {"neighbourhood", fmt::format("{}", options.defects.neighbourhood)},
-      {"tolerance", fmt::format("{}", options.defects.tolerance)},
-      {"scalar", options.scalar},
-  };
+  provenance.options = provenance_options(options, report.read.format);
+  provenance.options.emplace_back("input_hash", report.read.hash);
   const std::size_t tetrahedra = material.mesh.tetrahedra.size();
   provenance.counts = {
       {"atoms_read", report.read.atoms},
@@ -110,12 +109,39 @@ void describe(const std::string& path, const PipelineOptions& options, const Pip
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> provenance_options(const PipelineOptions& options,
+                                                                    const std::string& format) {
+  const std::string& cell = options.unit_cell;
+  return {
+      {"format", format},
+      {"frame", std::to_string(options.read.frame)},
+      {"type_names", joined(options.read.type_names)},
+      {"mask", joined(options.reduce.mask)},
+      {"keep_every", std::to_string(options.reduce.keep_every)},
+      {"transition_distance", fmt::format("{}", options.reduce.transition_distance)},
+      {"boundary_distance", fmt::format("{}", options.reduce.boundary_distance)},
+      {"mesher", options.tetrahedralize.mesher},
+      {"carve", !options.carve                       ? "off"
+                : options.carve_options.radius > 0.0 ? fmt::format("{}", options.carve_options.radius)
+                                                     : "auto"},
+      {"unit_cell", cell},
+      {"unit_cell_hash", cell == "auto" || cell == "none" ? "" : content_hash_of_file(cell)},
+      {"neighbourhood", fmt::format("{}", options.defects.neighbourhood)},
+      {"tolerance", fmt::format("{}", options.defects.tolerance)},
+      {"scalar", options.scalar},
+  };
+}
+
+std::string program_version() {
+  return "atomesh " ATOMESH_VERSION;
+}
+
 Material preprocess(const std::string& path, const PipelineOptions& options, PipelineReport& report,
                     Progress& progress) {
   Material material;
-  StageClock stage(material.provenance.stages, progress);
-  const MaterialParts& wanted = options.wanted;
   report = {};
+  StageClock stage(material.provenance.stages, report.stage_memory, progress);
+  const MaterialParts& wanted = options.wanted;
 
   {
     ReadResult read = stage("read_atoms", [&] { return read_atoms(path, options.read, progress); });
@@ -144,6 +170,8 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
           "carve", [&] { return carve(std::move(material.mesh), options.carve_options, report.carve, progress); });
     }
     if (wanted.surface) {
+      require_memory_for("extract_surface", material.mesh.tetrahedra.size(), "tetrahedra",
+                         memory_to_extract_surface(material.mesh.vertices.size(), material.mesh.tetrahedra.size()));
       material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh, progress); });
     }
     stage("measure", [&] {
@@ -161,6 +189,8 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
         "defects were not quantified: a reduced sample no longer has the crystal's neighbours; choose what to show "
         "with --scalar");
   } else if (wanted.defects && material.unit_cell) {
+    require_memory_for("quantify_defects", material.atoms.size(), "atoms",
+                       memory_to_quantify_defects(material.atoms.size()));
     material.defects = stage("quantify_defects", [&] {
       return quantify_defects(material.atoms, *material.unit_cell, options.defects, report.defects, progress);
     });

@@ -1,7 +1,9 @@
 // The whole way from a file of atoms to a Material, stage by stage.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/material.h"
@@ -43,13 +45,22 @@ struct PipelineReport {
   double min_dihedral_deg = 0.0;          // of the carved mesh
   double surface_area = 0.0;              // Å²
   bool surface_closed = false;
+  // Of each of Material::provenance.stages: the most memory that the process held while it ran, bytes.
+  std::vector<std::uint64_t> stage_memory;
   std::vector<std::string> notes;  // what a person should know, one sentence each; the readers' own are in `read`
 };
 
 // Names, times (into Material::provenance.stages) and can cancel each stage. Apart from those times the result depends
-// only on the file and the options. Throws what the stages throw, and UsageError for a scalar that the file does not
-// have.
+// only on the file and the options. Throws what the stages throw, UsageError for a scalar that the file does not have,
+// and UnavailableError before a stage that would take more memory than there is (memory_needs.h), or when one ran out.
 Material preprocess(const std::string& path, const PipelineOptions& options, PipelineReport& report,
                     Progress& progress = no_progress());
+
+// The options that decide the result, by name, as they are written into Provenance::options. `format` is the one that
+// was read, or empty where that is not known yet; a unit cell from a file counts by that file's content.
+std::vector<std::pair<std::string, std::string>> provenance_options(const PipelineOptions& options,
+                                                                    const std::string& format);
+// Provenance::program of what this build makes.
+std::string program_version();
 
 }  // namespace atomesh

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "preprocess/read_formats.h"
 
@@ -129,7 +130,7 @@ std::uint64_t hash_of(const Vec3& p, std::uint16_t species) {
 
 // Indices of the atoms that equal no earlier one. Open addressing; a slot holds the upper half of the hash beside the
 // index, so that the positions are looked at only for likely duplicates, and slots are fetched ahead of their use.
-std::vector<Index> distinct_atoms(const Atoms& atoms) {
+std::vector<Index> distinct_atoms(const Atoms& atoms, Progress& progress) {
   constexpr std::size_t ahead = 32;
   const std::size_t count = atoms.size();
   const std::size_t mask = std::bit_ceil(2 * count + 1) - 1;
@@ -143,6 +144,7 @@ std::vector<Index> distinct_atoms(const Atoms& atoms) {
   for (std::size_t i = 0; i < std::min(ahead, count); ++i) prepare(i);
   bool all = true;
   for (std::size_t i = 0; i < count; ++i) {
+    if (i % 65536 == 0) progress.check();
     const std::uint64_t hash = hashes[i % ahead];
     const std::uint64_t tag = hash & ~std::uint64_t{0xFFFFFFFF};
     bool duplicate = false;
@@ -174,16 +176,20 @@ std::vector<Index> distinct_atoms(const Atoms& atoms) {
 
 ReadResult read_atoms(const std::string& path, const ReadOptions& options, Progress& progress) {
   progress.stage("read_atoms");
-  const MappedFile file(path);
-  if (file.bytes().empty()) throw InputError(path, 0, "is empty; expected atoms");
-  refuse_binary(path, file.bytes());
-  const Format& format = choose_format(path, file.bytes(), options);
-  ReadResult result = format.read(Input{path, file.bytes(), options, progress});
+  ReadResult result;
+  {
+    const MappedFile file(path);
+    if (file.bytes().empty()) throw InputError(path, 0, "is empty; expected atoms");
+    refuse_binary(path, file.bytes());
+    const Format& format = choose_format(path, file.bytes(), options);
+    result = format.read(Input{path, file.bytes(), options, progress});
+    if (result.report.format.empty()) result.report.format = format.name;
+    result.report.bytes = file.bytes().size();
+    result.report.hash = content_hash(file.bytes(), progress);
+  }
   ReadReport& report = result.report;
-  if (report.format.empty()) report.format = format.name;
-  report.bytes = file.bytes().size();
   if (result.atoms.positions.empty()) throw InputError(path, 0, "holds no atoms; expected at least one");
-  const std::vector<Index> kept = distinct_atoms(result.atoms);
+  const std::vector<Index> kept = distinct_atoms(result.atoms, progress);
   if (!kept.empty()) {
     report.duplicates = result.atoms.size() - kept.size();
     result.atoms = result.atoms.subset(kept);

@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "preprocess/dat_words.h"
+#include "preprocess/memory_needs.h"
 #include "preprocess/read_formats.h"
 
 namespace atomesh::reading {
@@ -52,6 +53,7 @@ class DatReader {
     const auto newlines = static_cast<std::size_t>(std::count(sample.begin(), sample.end(), '\n'));
     if (newlines == 0) return;
     const std::size_t atoms = input_.text.size() / (sample.size() / newlines) + 16;
+    require_memory_for(input_.path + ": reading", atoms, "atoms", memory_to_read(atoms, 0, false));
     result_.atoms.positions.reserve(atoms);
     result_.atoms.species.reserve(atoms);
   }

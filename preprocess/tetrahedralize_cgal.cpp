@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "core/predicates.h"
+#include "preprocess/memory_needs.h"
 #include "preprocess/tetrahedralize.h"
 
 namespace {
@@ -43,6 +44,22 @@ struct Traits : Epick {
   Side_of_oriented_sphere_3 side_of_oriented_sphere_3_object() const { return {}; }
 };
 
+// Index → point for sorting, which has no other place to look whether to cancel.
+struct CancellablePoints {
+  using key_type = std::size_t;
+  using value_type = Traits::Point_3;
+  using reference = const Traits::Point_3&;
+  using category = boost::readable_property_map_tag;
+
+  const Traits::Point_3* points;
+  const atomesh::Progress* progress;
+
+  friend reference get(const CancellablePoints& map, std::size_t i) {
+    map.progress->check();
+    return map.points[i];
+  }
+};
+
 using Vertex = CGAL::Triangulation_vertex_base_with_info_3<atomesh::Index, Traits>;
 using Cell = CGAL::Delaunay_triangulation_cell_base_3<Traits>;
 
@@ -61,6 +78,7 @@ namespace atomesh {
 std::vector<Tetrahedron> delaunay_cgal(std::span<const Vec3> points, Progress& progress) {
   using Triangulation =
       CGAL::Delaunay_triangulation_3<Traits, CGAL::Triangulation_data_structure_3<Vertex, Cell, CGAL::Sequential_tag>>;
+  require_memory_for("Delaunay tetrahedralization", points.size(), "points", memory_to_mesh("delaunay", points.size()));
   std::vector<Traits::Point_3> positions;
   positions.reserve(points.size());
   for (const Vec3& p : points) positions.emplace_back(p.x, p.y, p.z);
@@ -74,9 +92,9 @@ std::vector<Tetrahedron> delaunay_cgal(std::span<const Vec3> points, Progress& p
   // core.
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  using Map = CGAL::Pointer_property_map<Traits::Point_3>::type;
-  CGAL::spatial_sort(order.begin(), order.end(),
-                     CGAL::Spatial_sort_traits_adapter_3<Traits, Map>(CGAL::make_property_map(positions)));
+  CGAL::spatial_sort(
+      order.begin(), order.end(),
+      CGAL::Spatial_sort_traits_adapter_3<Traits, CancellablePoints>(CancellablePoints{positions.data(), &progress}));
 
   Triangulation triangulation;
   Triangulation::Vertex_handle hint;
@@ -86,10 +104,13 @@ std::vector<Tetrahedron> delaunay_cgal(std::span<const Vec3> points, Progress& p
     if (i % 1024 == 0) progress.update(static_cast<double>(i) / static_cast<double>(order.size()));
   }
 
+  positions = {};
+  order = {};
   std::vector<Tetrahedron> tetrahedra;
   if (triangulation.dimension() < 3) return tetrahedra;
   tetrahedra.reserve(triangulation.number_of_cells());
   for (auto cell = triangulation.finite_cells_begin(); cell != triangulation.finite_cells_end(); ++cell) {
+    if (tetrahedra.size() % 65536 == 0) progress.check();
     tetrahedra.push_back(
         {cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(), cell->vertex(3)->info()});
   }

@@ -7,8 +7,10 @@
 #include <tetgen.h>
 
 #include <algorithm>
+#include <new>
 
 #include "core/predicates.h"
+#include "preprocess/memory_needs.h"
 #include "preprocess/remove_flat.h"
 #endif
 
@@ -46,6 +48,7 @@ std::vector<Tetrahedron> delaunay_tetgen(std::span<const Vec3> points, Tetrahedr
     throw Error("TetGen counts in 31 bits: too many atoms for it; use --mesher delaunay");
   }
   progress.check();
+  require_memory_for("tetrahedralization by TetGen", points.size(), "points", memory_to_mesh("tetgen", points.size()));
 
   tetgenio input;
   tetgenio output;
@@ -59,6 +62,7 @@ std::vector<Tetrahedron> delaunay_tetgen(std::span<const Vec3> points, Tetrahedr
     std::string switches = "QJ";
     ::tetrahedralize(switches.data(), &input, &output);
   } catch (const int code) {
+    if (code == 1) throw std::bad_alloc();
     throw Error("TetGen gave up (its code " + std::to_string(code) + "); use --mesher delaunay");
   }
   progress.check();
