@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/unit_cell.h"
@@ -46,5 +47,18 @@ struct LatticeTemplate {
 // conventional cell, skew or long ones too; throws what check_unit_cell throws, and Error for a cell whose polytopes
 // have more corners than pull_polytope_corners or reach further than 100 cells.
 LatticeTemplate make_lattice_template(const UnitCell& cell);
+
+struct PullingDirection {
+  Vec3 direction{1.0, 0.0, 0.0};
+  double separation = 0.0;  // Å, the least difference of height of two corners of a polytope; infinite for simplices
+};
+
+// The direction along which the corners of each polytope stand furthest apart: templates of several grains must be cut
+// along one direction.
+PullingDirection find_pulling_direction(std::span<const std::vector<Vec3>> polytopes);
+
+// A polytope cut by pull_polytope() in the order of its corners' heights along the direction: indices into corners.
+// Empty for corners that span no volume.
+std::vector<std::array<std::uint8_t, 4>> cut_polytope(std::span<const Vec3> corners, const Vec3& direction);
 
 }  // namespace atomesh

@@ -1,0 +1,61 @@
+#include "preprocess/stamp_delaunay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/circumsphere.h"
+#include "core/error.h"
+#include "preprocess/remove_slivers.h"
+#include "preprocess/stamp_fill.h"
+#include "preprocess/stamp_sample.h"
+#include "preprocess/tetrahedralize.h"
+
+namespace atomesh {
+
+namespace {
+
+// With more of the points open than this, triangulating all of them is faster.
+constexpr double most_open = 0.95;
+
+std::vector<Tetrahedron> without_stamps(std::span<const Vec3> points, const StampOptions& options, Progress& progress) {
+  std::vector<Tetrahedron> tetrahedra = delaunay_cgal(points, progress);
+  remove_slivers(tetrahedra, points);
+  std::erase_if(tetrahedra, [&](const Tetrahedron& t) {
+    return circumsphere(points[t[0]], points[t[1]], points[t[2]], points[t[3]]).radius > options.largest_radius;
+  });
+  return tetrahedra;
+}
+
+}  // namespace
+
+std::vector<Tetrahedron> stamp_delaunay(std::span<const Vec3> points, const LatticeSites& sites,
+                                        const StampOptions& options, StampReport& report, Progress& progress) {
+  if (!(options.largest_radius > 0.0) || !std::isfinite(options.largest_radius)) {
+    throw UsageError("the largest radius must be a positive length in Å; got " +
+                     std::to_string(options.largest_radius));
+  }
+  if (!(options.tolerance > 0.0 && options.tolerance < 0.01)) {
+    throw UsageError("the tolerance of stamping must lie between 0 and 0.01; got " + std::to_string(options.tolerance));
+  }
+  if (sites.of.size() != points.size()) throw UsageError("stamping needs the site of every point");
+  report = {};
+  {
+    const StampedSample sample(points, sites, options, progress);
+    const std::vector<Index> open = sample.open_points(progress);
+    progress.check();
+    if (static_cast<double>(open.size()) <= most_open * static_cast<double>(points.size())) {
+      if (const auto filled = fill_open(sample, sites, open, progress)) {
+        report = {sample.stamped(), open.size(), filled->size()};
+        std::vector<Tetrahedron> tetrahedra(sample.stamped() + filled->size());
+        sample.write(std::span(tetrahedra).first(sample.stamped()), progress);
+        std::copy(filled->begin(), filled->end(), tetrahedra.begin() + static_cast<std::ptrdiff_t>(sample.stamped()));
+        return tetrahedra;
+      }
+    }
+  }
+  std::vector<Tetrahedron> tetrahedra = without_stamps(points, options, progress);
+  report = {0, points.size(), tetrahedra.size()};
+  return tetrahedra;
+}
+
+}  // namespace atomesh

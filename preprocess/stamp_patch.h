@@ -1,0 +1,145 @@
+// One patch of a sample with the polytopes of its pattern that are stamped.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+#include "preprocess/stamp_pattern.h"
+
+namespace atomesh {
+
+using Cell = std::array<int, 3>;
+
+inline Cell operator+(const Cell& a, const Cell& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+// Cells are kept in bricks of 4×4×4, only where there are atoms: memory grows with the atoms, whatever the patch's
+// shape, but for a pointer a brick of its bounds.
+class StampedPatch {
+ public:
+  // `atoms`: the patch's atoms that are in place. Those that find their site taken are handed back in `left_over`.
+  // `points` and `of` are the whole sample's and must outlive this. Nothing when the patch is so scattered that even
+  // its bricks' bounds would not fit.
+  static std::optional<StampedPatch> make(PatchPattern pattern, std::span<const Index> atoms,
+                                          std::span<const Vec3> points, std::span<const LatticeSite> of,
+                                          std::vector<Index>& left_over);
+
+  const PatchPattern& pattern() const { return pattern_; }
+  // no_index where no atom is in place.
+  Index atom(const Cell& cell, std::size_t basis) const {
+    const std::size_t s = slot(cell);
+    return s == nowhere ? no_index : atoms_[s * pattern_.basis() + basis];
+  }
+
+  // Polytopes whose sphere might hold this place will not be stamped. May be called from several threads.
+  void keep_clear_of(const Vec3& position);
+  // Stamps what can be stamped; returns how many tetrahedra that makes.
+  std::size_t stamp(double largest_radius, double tolerance, Progress& progress);
+  std::size_t tetrahedra() const { return total_; }
+  // Writes them.
+  void write(std::span<Tetrahedron> tetrahedra, Progress& progress) const;
+
+  bool stamped(const Cell& anchor, std::size_t polytope) const {
+    const std::size_t s = slot(anchor);
+    return s != nowhere && state_[s * pattern_.polytopes().size() + polytope] == State::stamped;
+  }
+  // Whether every polytope around an atom is stamped.
+  bool whole(const LatticeSite& site) const;
+  bool any_stamped(const LatticeSite& site) const;
+  // Whether the sites, all of this patch, are corners of one stamped polytope.
+  bool in_one_polytope(std::span<const LatticeSite> sites) const;
+  // Calls body(triangle) for the triangles at an atom with a stamped polytope before and none behind them, seen
+  // counter-clockwise from behind (outside). Stops and returns false when body does.
+  template <class Body>
+  bool each_outside_face(const LatticeSite& site, Body&& body) const;
+  // Calls body(atom) for the atoms in place within `radius` of a place. Stops and returns false when body does.
+  template <class Body>
+  bool each_in_ball(const Vec3& center, double radius, Body&& body) const;
+
+ private:
+  enum class State : std::uint8_t { open, stamped, kept_clear };
+  static constexpr std::size_t nowhere = ~std::size_t{0};
+  static constexpr std::size_t cells_per_brick = 64;
+
+  StampedPatch(PatchPattern pattern, std::span<const Vec3> points) : pattern_(std::move(pattern)), points_(points) {}
+  bool lay_bricks(std::span<const Index> atoms, std::span<const LatticeSite> of);
+  std::size_t slot(const Cell& cell) const {
+    // Numbers below the first become huge ones.
+    const auto i = static_cast<std::uint32_t>(cell[0] - min_[0]);
+    const auto j = static_cast<std::uint32_t>(cell[1] - min_[1]);
+    const auto k = static_cast<std::uint32_t>(cell[2] - min_[2]);
+    if (i >> 2 >= bricks_[0] || j >> 2 >= bricks_[1] || k >> 2 >= bricks_[2]) return nowhere;
+    const Index brick = brick_[(std::size_t{i >> 2} * bricks_[1] + (j >> 2)) * bricks_[2] + (k >> 2)];
+    if (brick == no_index) return nowhere;
+    return brick * cells_per_brick + ((i & 3) << 4 | (j & 3) << 2 | (k & 3));
+  }
+  Cell cell_of(std::size_t brick, std::size_t local) const {
+    const auto n = static_cast<int>(local);
+    return first_cell_[brick] + Cell{n >> 4, n >> 2 & 3, n & 3};
+  }
+  bool fits(const PatternPolytope& polytope, const Cell& anchor, double largest_radius, double tolerance) const;
+
+  PatchPattern pattern_;
+  std::span<const Vec3> points_;
+  Cell min_{};
+  std::array<std::uint32_t, 3> bricks_{};  // along each axis of the bounds
+  std::vector<Index> brick_;               // of each place in the bounds, no_index: none
+  std::vector<Cell> first_cell_;           // of each brick
+  std::vector<Index> atoms_;               // [brick][cell][basis]
+  std::vector<State> state_;               // [brick][cell][polytope]
+  std::vector<std::size_t> tetrahedra_;    // stamped in each brick
+  std::size_t total_ = 0;                  // in all
+};
+
+template <class Body>
+bool StampedPatch::each_outside_face(const LatticeSite& site, Body&& body) const {
+  for (const PatternCorner& c : pattern_.around(site.basis)) {
+    const Cell anchor = site.cell + c.cell;
+    if (!stamped(anchor, c.polytope)) continue;
+    const PatternPolytope& polytope = pattern_.polytopes()[c.polytope];
+    for (const PatternFace& face : polytope.faces) {
+      if (face.corners[0] != c.corner && face.corners[1] != c.corner && face.corners[2] != c.corner) continue;
+      if (stamped(anchor + face.cell, face.neighbour)) continue;
+      Triangle triangle;
+      for (int i = 0; i < 3; ++i) {
+        const SiteOffset& s = polytope.corners[face.corners[i]];
+        triangle[i] = atom(anchor + Cell{s.cell[0], s.cell[1], s.cell[2]}, s.basis);
+      }
+      if (!body(triangle)) return false;
+    }
+  }
+  return true;
+}
+
+template <class Body>
+bool StampedPatch::each_in_ball(const Vec3& center, double radius, Body&& body) const {
+  const Vec3 middle = pattern_.fraction(center);
+  const Vec3 reach = (radius + pattern_.in_place()) * pattern_.cells_per_length();
+  for (std::size_t b = 0; b < pattern_.basis(); ++b) {
+    Cell low, high, cell;
+    for (int k = 0; k < 3; ++k) {
+      const double at = middle[k] - pattern_.fractional()[b][k];
+      const double last = static_cast<double>(min_[k]) + 4.0 * bricks_[k];
+      low[k] = static_cast<int>(std::clamp(std::ceil(at - reach[k]), static_cast<double>(min_[k]), last));
+      high[k] = static_cast<int>(std::clamp(std::floor(at + reach[k]), static_cast<double>(min_[k]) - 1.0, last));
+    }
+    for (cell[0] = low[0]; cell[0] <= high[0]; ++cell[0]) {
+      for (cell[1] = low[1]; cell[1] <= high[1]; ++cell[1]) {
+        for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) {
+          const Index i = atom(cell, b);
+          if (i == no_index) continue;
+          const Vec3 d = points_[i] - center;
+          if (glm::dot(d, d) <= radius * radius && !body(i)) return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace atomesh

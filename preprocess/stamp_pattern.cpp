@@ -1,0 +1,187 @@
+#include "preprocess/stamp_pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/circumsphere.h"
+
+namespace atomesh {
+
+namespace {
+
+// Shares of the nearest-neighbour distance, and of the separation of heights, that an atom in place may be off.
+constexpr double in_place_of_neighbour = 0.02;
+constexpr double in_place_of_separation = 0.2;
+
+double fatness(const std::array<Vec3, 4>& p) {
+  double longest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i + 1; j < 4; ++j) longest = std::max(longest, glm::distance(p[i], p[j]));
+  }
+  return signed_volume(p[0], p[1], p[2], p[3]) / (longest * longest * longest);
+}
+
+// The least difference of the heights of two corners.
+double separation(const std::vector<Vec3>& corners, const Vec3& direction) {
+  std::vector<double> heights;
+  for (const Vec3& p : corners) heights.push_back(glm::dot(p, direction));
+  std::sort(heights.begin(), heights.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < heights.size(); ++i) least = std::min(least, heights[i] - heights[i - 1]);
+  return least;
+}
+
+}  // namespace
+
+PatchPattern::PatchPattern(const LatticeTemplate& pattern, const LatticePatch& patch, const Vec3& direction)
+    : matrix_(patch.matrix), origin_(patch.origin) {
+  if (!(std::abs(glm::determinant(matrix_)) > 0.0)) return;
+  inverse_ = glm::inverse(matrix_);
+  for (int k = 0; k < 3; ++k) {
+    // Rows of the inverse are the reciprocal vectors.
+    cells_per_length_[k] = glm::length(Vec3(inverse_[0][k], inverse_[1][k], inverse_[2][k]));
+  }
+  const Mat3 to_fraction = glm::inverse(pattern.cell.matrix());
+  for (const BasisAtom& atom : pattern.cell.basis) fractional_.push_back(to_fraction * atom.position);
+  in_place_ = in_place_of_neighbour * nearest_neighbour();
+
+  around_.resize(fractional_.size());
+  for (const TemplatePolytope& t : pattern.polytopes) {
+    PatternPolytope polytope;
+    polytope.corners = t.corners;
+    std::vector<Vec3> corners;
+    for (const SiteOffset& s : t.corners) corners.push_back(offset_position(s));
+    polytope.tetrahedra = cut_polytope(corners, direction);
+    if (corners.size() > 4) in_place_ = std::min(in_place_, in_place_of_separation * separation(corners, direction));
+    for (std::size_t c = 0; c < t.corners.size(); ++c) {
+      const auto& cell = t.corners[c].cell;
+      around_[t.corners[c].basis].push_back(
+          {static_cast<Index>(polytopes_.size()), {-cell[0], -cell[1], -cell[2]}, static_cast<std::uint8_t>(c)});
+    }
+    polytopes_.push_back(std::move(polytope));
+  }
+  usable_ = in_place_ > 0.0 && place_spheres() && join_faces();
+  if (usable_) find_close_sites();
+}
+
+double PatchPattern::nearest_neighbour() const {
+  double nearest = glm::length(matrix_[0]);
+  for (std::size_t a = 0; a < fractional_.size(); ++a) {
+    for (std::size_t b = 0; b < fractional_.size(); ++b) {
+      for (int n = 0; n < 27; ++n) {
+        if (a == b && n == 13) continue;
+        const Vec3 d = fractional_[b] - fractional_[a] + Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        nearest = std::min(nearest, glm::length(matrix_ * d));
+      }
+    }
+  }
+  return nearest;
+}
+
+bool PatchPattern::place_spheres() {
+  for (PatternPolytope& polytope : polytopes_) {
+    double fattest = 0.0;
+    for (const auto& t : polytope.tetrahedra) {
+      std::array<Vec3, 4> p;
+      for (int i = 0; i < 4; ++i) p[i] = offset_position(polytope.corners[t[i]]);
+      const double fat = fatness(p);
+      if (!(fat > 0.0)) return false;  // turned inside out
+      if (fat <= fattest * (1.0 + 1e-6)) continue;
+      fattest = fat;
+      polytope.frame = t;
+      const Sphere sphere = circumsphere(p[0], p[1], p[2], p[3]);
+      polytope.center = sphere.center;
+      polytope.center_fraction = inverse_ * sphere.center;
+      polytope.radius = sphere.radius;
+    }
+    if (polytope.tetrahedra.empty()) return false;
+    largest_void_ = std::max(largest_void_, polytope.radius);
+  }
+  return true;
+}
+
+// Each triangle of the outside is, but for a translation, that of one other polytope (or of the same): the triangle's
+// sites, sorted and counted from the cell of the first, tell which.
+bool PatchPattern::join_faces() {
+  using Name = std::array<std::array<int, 4>, 3>;
+  struct Place {
+    Index polytope;
+    std::size_t face;
+    std::array<int, 3> cell;
+  };
+  std::map<Name, std::vector<Place>> places;
+  for (std::size_t p = 0; p < polytopes_.size(); ++p) {
+    PatternPolytope& polytope = polytopes_[p];
+    std::map<std::array<std::uint8_t, 3>, std::vector<std::array<std::uint8_t, 3>>> triangles;
+    for (const auto& t : polytope.tetrahedra) {
+      for (const auto& f : face_corners) {
+        const std::array<std::uint8_t, 3> triangle{t[f[0]], t[f[1]], t[f[2]]};
+        auto sorted = triangle;
+        std::sort(sorted.begin(), sorted.end());
+        triangles[sorted].push_back(triangle);
+      }
+    }
+    for (const auto& [sorted, seen] : triangles) {
+      if (seen.size() > 2) return false;
+      if (seen.size() == 2) continue;  // between two tetrahedra
+      Name name;
+      for (int i = 0; i < 3; ++i) {
+        const SiteOffset& s = polytope.corners[seen[0][i]];
+        name[i] = {s.basis, s.cell[0], s.cell[1], s.cell[2]};
+      }
+      std::sort(name.begin(), name.end());
+      const std::array<int, 3> cell{name[0][1], name[0][2], name[0][3]};
+      for (auto& site : name) {
+        for (int k = 0; k < 3; ++k) site[k + 1] -= cell[k];
+      }
+      places[name].push_back({static_cast<Index>(p), polytope.faces.size(), cell});
+      polytope.faces.push_back({seen[0], no_index, {}});
+    }
+  }
+  for (const auto& [name, pair] : places) {
+    if (pair.size() != 2) return false;
+    for (int side = 0; side < 2; ++side) {
+      const Place &here = pair[side], &there = pair[1 - side];
+      PatternFace& face = polytopes_[here.polytope].faces[here.face];
+      face.neighbour = there.polytope;
+      for (int k = 0; k < 3; ++k) face.cell[k] = here.cell[k] - there.cell[k];
+    }
+  }
+  return true;
+}
+
+template <class Body>
+void PatchPattern::for_cells(const Vec3& fraction, double radius, Body&& body) const {
+  std::array<int, 3> low, high;
+  for (int k = 0; k < 3; ++k) {
+    low[k] = static_cast<int>(std::ceil(fraction[k] - radius * cells_per_length_[k]));
+    high[k] = static_cast<int>(std::floor(fraction[k] + radius * cells_per_length_[k]));
+  }
+  std::array<int, 3> cell;
+  for (cell[0] = low[0]; cell[0] <= high[0]; ++cell[0]) {
+    for (cell[1] = low[1]; cell[1] <= high[1]; ++cell[1]) {
+      for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) body(cell);
+    }
+  }
+}
+
+void PatchPattern::find_close_sites() {
+  for (PatternPolytope& polytope : polytopes_) {
+    const double reach = polytope.radius + close_slack * in_place_;
+    for (std::size_t b = 0; b < fractional_.size(); ++b) {
+      for_cells(inverse_ * polytope.center - fractional_[b], reach, [&](const std::array<int, 3>& cell) {
+        const Vec3 p = matrix_ * (Vec3(cell[0], cell[1], cell[2]) + fractional_[b]);
+        if (glm::distance(p, polytope.center) >= reach) return;
+        const SiteOffset s{
+            {static_cast<std::int8_t>(cell[0]), static_cast<std::int8_t>(cell[1]), static_cast<std::int8_t>(cell[2])},
+            static_cast<std::uint16_t>(b)};
+        if (std::find(polytope.corners.begin(), polytope.corners.end(), s) == polytope.corners.end()) {
+          polytope.close.push_back(s);
+        }
+      });
+    }
+  }
+}
+
+}  // namespace atomesh

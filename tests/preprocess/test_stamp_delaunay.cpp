@@ -1,0 +1,227 @@
+// Stamping against CGAL on all points: the same cells, whatever is wrong with the crystal.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/circumsphere.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "preprocess/carve.h"
+#include "preprocess/gather_polytopes.h"
+#include "preprocess/stamp_delaunay.h"
+#include "preprocess/tetrahedralize.h"
+#include "tests/support/lattices.h"
+#include "tests/support/meshes.h"
+
+namespace atomesh::test {
+namespace {
+
+// A crystal whose sites are known, as the walk over a sample would find them.
+struct Placed {
+  std::vector<Vec3> points;
+  LatticeSites sites;
+};
+
+// Each atom near a site of a grain's cell (moved by its offset) gets it; grain g is where `inside` says so.
+struct Grain {
+  UnitCell cell;
+  Vec3 offset{0.0};
+  std::function<bool(const Vec3&)> inside = [](const Vec3&) { return true; };
+};
+
+Placed place(const std::vector<Vec3>& points, const std::vector<Grain>& grains, double tolerance = 0.5) {
+  Placed result;
+  result.points = points;
+  result.sites.of.resize(points.size());
+  for (const Grain& grain : grains) {
+    const auto p = static_cast<std::uint16_t>(result.sites.patches.size());
+    result.sites.patterns.push_back(make_lattice_template(grain.cell));
+    const UnitCell& cell = result.sites.patterns.back().cell;
+    LatticePatch patch;
+    patch.pattern = p;
+    patch.matrix = cell.matrix();
+    // The origin is that of the cell given, whose basis was wrapped by whole vectors.
+    patch.origin = grain.offset;
+    const Mat3 inverse = glm::inverse(cell.matrix());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      LatticeSite& site = result.sites.of[i];
+      if (site.patch != no_patch || !grain.inside(points[i])) continue;
+      double best = tolerance;
+      for (std::size_t b = 0; b < cell.basis.size(); ++b) {
+        const Vec3 f = glm::round(inverse * (points[i] - grain.offset - cell.basis[b].position));
+        const double off = glm::distance(points[i], grain.offset + cell.basis[b].position + cell.matrix() * f);
+        if (off >= best) continue;
+        best = off;
+        site.patch = p;
+        site.basis = static_cast<std::uint16_t>(b);
+        for (int k = 0; k < 3; ++k) site.cell[k] = static_cast<std::int32_t>(f[k]);
+      }
+      if (site.patch == p) ++patch.atoms;
+    }
+    result.sites.patches.push_back(patch);
+  }
+  return result;
+}
+
+// The crystal's radius for carving, and nothing that a sphere of the crystal equals.
+double radius_of(const Lattice& l) {
+  return 1.83 * make_lattice_template(l.cell).largest_void;
+}
+
+// Polytopes of a mesh: corners of all cells on one sphere.
+std::set<std::vector<Index>> polytopes(const TetMesh& mesh) {
+  const PolytopeTolerance tolerance{1e-7, 1e-6};
+  const auto sliver = find_slivers(mesh.tetrahedra, mesh.vertices, tolerance);
+  std::set<std::vector<Index>> result;
+  std::vector<Index> corners;
+  const auto members = gather_polytopes(mesh.tetrahedra, mesh.vertices, face_neighbours(mesh), sliver, tolerance);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Tetrahedron& t = mesh.tetrahedra[members[i].second];
+    corners.insert(corners.end(), t.begin(), t.end());
+    if (i + 1 < members.size() && members[i + 1].first == members[i].first) continue;
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    result.insert(corners);
+    corners.clear();
+  }
+  return result;
+}
+
+struct Compared {
+  StampReport report;
+  TetMesh mesh;
+};
+
+Compared expect_delaunay(const Placed& placed, double radius, const std::string& what) {
+  Compared result;
+  result.mesh = mesh_of(placed.points, stamp_delaunay(placed.points, placed.sites, {radius}, result.report));
+  result.mesh.delaunay = true;
+  EXPECT_EQ(result.mesh.tetrahedra.size(), result.report.stamped + result.report.filled) << what;
+  EXPECT_EQ(validate(result.mesh), std::vector<std::string>{}) << what;
+  TetrahedralizeReport report;
+  CarveReport carve_report;
+  const TetMesh carved = carve(tetrahedralize(atoms_at(placed.points), {"delaunay"}, report), {radius}, carve_report);
+  EXPECT_NEAR(volume(result.mesh), volume(carved), 1e-9 * volume(carved)) << what;
+  const auto expected = polytopes(carved);
+  const auto found = polytopes(result.mesh);
+  std::size_t missing = 0;
+  for (const auto& p : expected) missing += found.count(p) == 0 ? 1 : 0;
+  EXPECT_EQ(missing, 0u) << what << " of " << expected.size();
+  EXPECT_EQ(found.size(), expected.size()) << what;
+  return result;
+}
+
+UnitCell turned(UnitCell cell) {
+  for (Vec3& v : cell.primitive) v = odd_rotation() * v;
+  for (BasisAtom& b : cell.basis) b.position = odd_rotation() * b.position;
+  return cell;
+}
+
+std::array<int, 3> cells_for(const Lattice& l, double edge) {
+  std::array<int, 3> n;
+  for (int k = 0; k < 3; ++k) n[k] = static_cast<int>(std::ceil(edge / glm::length(l.cell.primitive[k])));
+  return n;
+}
+
+Atoms block(const Lattice& l, double edge) {
+  const auto n = cells_for(l, edge);
+  return cut_block(l.cell, n[0], n[1], n[2]);
+}
+
+// Lattices of the tests with a skew primitive one and CsCl's.
+std::vector<Lattice> crystals() {
+  std::vector<Lattice> all = lattices();
+  Lattice skew{"skew", {}, 3.0};
+  skew.cell.primitive = {Vec3(3.1, 0, 0), Vec3(1.4, 3.7, 0), Vec3(5.1, -3.3, 4.2)};
+  skew.cell.basis = {{"A", Vec3(0.0)}, {"B", Vec3(2.2, 0.4, 1.7)}};
+  all.push_back(skew);
+  return all;
+}
+
+// What touches neither the surface nor a defect is stamped; at 1 % of the test's few atoms it would show.
+TEST(StampDelaunay, PerfectBlocksNeedNoTriangulation) {
+  for (const Lattice& l : crystals()) {
+    if (l.name == "skew") continue;  // its block is bounded by no planes of its polytopes
+    const Compared c = expect_delaunay(place(block(l, 18.0).positions, {{l.cell}}), radius_of(l), l.name);
+    if (l.name == "sc" || l.name == "nacl") {
+      EXPECT_EQ(c.report.open_atoms, 0u) << l.name;
+      EXPECT_EQ(c.report.filled, 0u) << l.name;
+    }
+    EXPECT_GT(c.report.stamped, 0u) << l.name;
+    std::printf("%s: %zu atoms, stamped %zu, open %zu, filled %zu\n", l.name.c_str(), c.mesh.vertices.size(),
+                c.report.stamped, c.report.open_atoms, c.report.filled);
+  }
+}
+
+TEST(StampDelaunay, SpheresAndTurnedBlocks) {
+  for (const Lattice& l : crystals()) {
+    const UnitCell cell = turned(l.cell);
+    const Vec3 half(9.0, 8.0, 10.0);
+    for (const bool ball : {false, true}) {
+      const Atoms atoms = ball ? cut_sphere(cell, 9.5) : cut_where(cell, half, [](const Vec3&) { return true; });
+      const Compared c =
+          expect_delaunay(place(atoms.positions, {{cell}}), radius_of(l), l.name + (ball ? " ball" : " block"));
+      EXPECT_GT(c.report.stamped, 0u) << l.name;
+      std::printf("%s: %zu atoms, stamped %zu, open %zu, filled %zu\n", l.name.c_str(), c.mesh.vertices.size(),
+                  c.report.stamped, c.report.open_atoms, c.report.filled);
+    }
+  }
+}
+
+TEST(StampDelaunay, VacanciesInterstitialsAndCavities) {
+  for (const Lattice& l : crystals()) {
+    for (const bool turn : {false, true}) {
+      const UnitCell cell = turn ? turned(l.cell) : l.cell;
+      Atoms atoms = block(l, 22.0);
+      const Vec3 middle = bounds_of(atoms.positions).center();
+      remove_nearest(atoms, middle + Vec3(5.0, 4.0, 3.0));
+      remove_nearest(atoms, middle + Vec3(5.0, 4.0, 3.0));    // a neighbour of the first
+      remove_nearest(atoms, bounds_of(atoms.positions).min);  // a corner of the block
+      remove_nearest(atoms, middle + Vec3(-40.0, 0.0, 0.0));  // in its face
+      std::vector<Vec3> points;
+      for (const Vec3& p : atoms.positions) {
+        if (glm::distance(p, middle - Vec3(4.0)) > 0.9 * l.nearest_neighbour) points.push_back(p);
+      }
+      points.push_back(middle + Vec3(0.31, 0.17, 0.47) * l.nearest_neighbour + Vec3(0, 0, 6.0));
+      points.push_back(bounds_of(points).max + Vec3(0.7, 0.6, 0.9));  // beside the block
+      points[points.size() / 3] += Vec3(0.11, 0.07, -0.05) * l.nearest_neighbour;
+      points[points.size() / 2] += Vec3(0.31, -0.27, 0.05) * l.nearest_neighbour;
+      if (turn) {
+        for (Vec3& p : points) p = odd_rotation() * p;
+      }
+      const Compared c = expect_delaunay(place(points, {{cell}}), radius_of(l), l.name);
+      EXPECT_GT(c.report.stamped, 0u) << l.name;
+      std::printf("%s: %zu atoms, stamped %zu, open %zu, filled %zu\n", l.name.c_str(), c.mesh.vertices.size(),
+                  c.report.stamped, c.report.open_atoms, c.report.filled);
+    }
+  }
+}
+
+TEST(StampDelaunay, HalvesThatSlidAndGrainsThatTurned) {
+  for (const Lattice& l : crystals()) {
+    const auto left = [](const Vec3& p) { return p.x < 0.1; };
+    const auto right = [](const Vec3& p) { return p.x >= 0.1; };
+    const Vec3 half(11.0, 8.0, 9.0);
+    const Vec3 slip(0.3, 0.9, -0.4);
+    std::vector<Vec3> points = cut_where(l.cell, half, left).positions;
+    std::vector<Vec3> slid = points;
+    for (const Vec3& p : cut_where(l.cell, half, right).positions) slid.push_back(p + slip);
+    Compared c = expect_delaunay(place(slid, {{l.cell, Vec3(0.0), left}, {l.cell, slip, right}}), radius_of(l),
+                                 l.name + " slid");
+    EXPECT_GT(c.report.stamped, 0u) << l.name;
+    const UnitCell other = turned(l.cell);
+    std::vector<Vec3> grains = points;
+    for (const Vec3& p : cut_where(other, half, [](const Vec3& q) { return q.x >= 1.0; }).positions)
+      grains.push_back(p);
+    c = expect_delaunay(place(grains, {{l.cell, Vec3(0.0), left}, {other, Vec3(0.0), right}}), radius_of(l),
+                        l.name + " grains");
+    EXPECT_GT(c.report.stamped, 0u) << l.name;
+    std::printf("%s: %zu atoms, stamped %zu, open %zu, filled %zu\n", l.name.c_str(), c.mesh.vertices.size(),
+                c.report.stamped, c.report.open_atoms, c.report.filled);
+  }
+}
+
+}  // namespace
+}  // namespace atomesh::test
