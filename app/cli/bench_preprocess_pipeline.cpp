@@ -1,6 +1,8 @@
 // bench preprocess, part pipeline.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/cli/bench_preprocess.h"
 #include "app/cli/bench_seed_table.h"
 #include "core/error.h"
@@ -64,7 +66,9 @@ void bench_file(const PreprocessBench& bench, TextTable& table, std::size_t atom
                   .median;
         },
         0);
+    // Each stage starts its own high-water mark.
     bytes = memory.held();
+    for (const std::uint64_t stage : report.stage_memory) bytes = std::max(bytes, static_cast<double>(stage));
   } catch (const CancelledError&) {
     throw;
   } catch (const Error& error) {
@@ -75,8 +79,11 @@ void bench_file(const PreprocessBench& bench, TextTable& table, std::size_t atom
   BenchRow row{"preprocess", name, "pipeline: .dat to .crb", Json::object({{"threads", threads()}}), "", times, {},
                {},           {}};
   Json stages = Json::array();
-  for (const StageTime& stage : material.provenance.stages) {
-    stages.push(Json::object({{"name", stage.name}, {"ms", stage.ms}}));
+  for (std::size_t i = 0; i < material.provenance.stages.size(); ++i) {
+    const StageTime& stage = material.provenance.stages[i];
+    stages.push(Json::object({{"name", stage.name},
+                              {"ms", stage.ms},
+                              {"peak_memory_mb", 1e-6 * static_cast<double>(report.stage_memory[i])}}));
   }
   stages.push(Json::object({{"name", "write_crb"}, {"ms", write_ms}}));
   const double million_atoms = 1e-6 * static_cast<double>(material.atoms.size());

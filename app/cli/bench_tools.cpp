@@ -1,29 +1,13 @@
 #include "app/cli/bench_tools.h"
 
-#include <malloc.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "app/cli/machine.h"
+#include "core/memory.h"
 
 namespace atomesh::cli {
-
-namespace {
-
-// A line of /proc/self/status in bytes ("VmHWM:	  1234 kB"); 0 where there is none.
-double status_bytes(std::string_view key) {
-  std::ifstream file("/proc/self/status");
-  for (std::string line; std::getline(file, line);) {
-    if (!line.starts_with(key)) continue;
-    const std::size_t digits = line.find_first_of("0123456789");
-    return digits == std::string::npos ? 0.0 : std::stod(line.substr(digits)) * 1024.0;
-  }
-  return 0.0;
-}
-
-}  // namespace
 
 Times times_of(std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
@@ -32,9 +16,9 @@ Times times_of(std::vector<double> ms) {
 }
 
 PeakMemory::PeakMemory() {
-  malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";  // the high-water mark starts again
-  before_ = status_bytes("VmRSS");
+  release_free_memory();
+  reset_peak_memory();
+  before_ = static_cast<double>(current_memory());
 }
 
 double PeakMemory::grown() const {
@@ -42,7 +26,7 @@ double PeakMemory::grown() const {
 }
 
 double PeakMemory::held() const {
-  return status_bytes("VmHWM");
+  return static_cast<double>(recent_peak_memory());
 }
 
 TemporaryFolder::TemporaryFolder()
@@ -79,8 +63,8 @@ void BenchResult::add(BenchRow row) {
                             {"ms_min", time(&Times::min)},
                             {"ms_max", time(&Times::max)},
                             {"max_error", std::move(row.max_error)},
-                            {"rmse", nullptr},
-                            {"psnr", nullptr}});
+                            {"rmse", std::move(row.rmse)},
+                            {"psnr", std::move(row.psnr)}});
   for (auto& [key, value] : row.more) json.set(key, std::move(value));
   Json requirements = Json::array();
   for (Requirement& requirement : row.requirements) {

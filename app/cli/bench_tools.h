@@ -38,11 +38,11 @@ Times measure(int repeats, Session& session, const std::string& what, auto&& wor
 }
 
 // The most memory the process holds from construction on: what was freed before is first given back to the system, so
-// that it does not hide what comes (Linux: /proc/self/clear_refs and VmHWM).
+// that it does not hide what comes.
 class PeakMemory {
  public:
   PeakMemory();
-  // Bytes more than at construction; 0 where the system does not tell.
+  // Bytes more than at construction.
   double grown() const;
   // Bytes in all.
   double held() const;
@@ -82,9 +82,10 @@ struct BenchRow {
   Json settings = Json::object();
   std::string peer;  // "" for ours alone
   std::optional<Times> times;
-  Json max_error;  // null where the bench has none
+  Json max_error;  // null where the bench has none, these and the two below
   std::vector<Json::Member> more;
   std::vector<Requirement> requirements;
+  Json rmse{}, psnr{};
 };
 
 struct BenchTable {
