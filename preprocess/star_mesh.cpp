@@ -1,0 +1,194 @@
+#include "preprocess/star_mesh.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.h"
+
+namespace atomesh {
+
+namespace {
+
+constexpr std::size_t most_tetrahedra = std::size_t{1} << 30U;
+
+// Which corner v is, without a branch that could be guessed wrong.
+Index corner_at(const Tetrahedron& tet, Index v) {
+  return static_cast<Index>(tet[1] == v) + 2 * static_cast<Index>(tet[2] == v) + 3 * static_cast<Index>(tet[3] == v);
+}
+
+}  // namespace
+
+StarMesh::StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>& vertices)
+    : vertices_(vertices), living_(tetrahedra.size()) {
+  if (tetrahedra.size() >= most_tetrahedra) throw Error("a mesh of 2^30 tetrahedra or more cannot be simplified");
+  TetMesh mesh;  // for face_neighbours(), which wants the number of vertices alone
+  mesh.tetrahedra = std::move(tetrahedra);
+  mesh.vertices.resize(vertices.size());
+  const std::vector<std::array<Index, 4>> neighbours = face_neighbours(mesh);
+  tetrahedra_ = std::move(mesh.tetrahedra);
+  behind_.assign(4 * tetrahedra_.size(), no_index);
+  corner_of_.assign(vertices.size(), no_index);
+  surface_.assign(vertices.size(), 0);
+  place_of_tetrahedron_.resize(tetrahedra_.size());
+  place_of_vertex_.resize(vertices.size());
+  for (Index t = 0; t < neighbours.size(); ++t) {
+    remember_corners(t);
+    for (Index f = 0; f < 4; ++f) {
+      const Index other = neighbours[t][f];
+      if (other == no_index) {
+        for (const int corner : face_corners[f]) surface_[tetrahedra_[t][corner]] = 1;
+        continue;
+      }
+      // Its face whose opposite vertex this tetrahedron does not have.
+      for (Index g = 0; g < 4; ++g) {
+        const Index apex = tetrahedra_[other][g];
+        if (std::find(tetrahedra_[t].begin(), tetrahedra_[t].end(), apex) == tetrahedra_[t].end()) {
+          behind_[4 * t + f] = 4 * other + g;
+        }
+      }
+    }
+  }
+}
+
+std::vector<double> StarMesh::shortest_edges() const {
+  std::vector<double> shortest(vertices_.size(), 0.0);
+  for (const Tetrahedron& tet : tetrahedra_) {
+    if (tet[0] == no_index) continue;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = i + 1; j < 4; ++j) {
+        const Vec3 edge = vertices_[tet[j]] - vertices_[tet[i]];
+        const double squared = glm::dot(edge, edge);
+        for (const Index v : {tet[i], tet[j]}) {
+          if (shortest[v] == 0.0 || squared < shortest[v]) shortest[v] = squared;
+        }
+      }
+    }
+  }
+  return shortest;
+}
+
+void StarMesh::gather(Index v, Star& star) {
+  star.vertex = v;
+  star.corners.clear();
+  star.link.clear();
+  star.triangles.clear();
+  const auto add = [&](Corner corner) {
+    place_of_tetrahedron_[corner / 4] = static_cast<Index>(star.corners.size());
+    star.corners.push_back(corner);
+  };
+  const auto gathered = [&](Index t) {
+    const Index place = place_of_tetrahedron_[t];
+    return place < star.corners.size() && star.corners[place] / 4 == t;
+  };
+  add(corner_of_[v]);
+  for (std::size_t i = 0; i < star.corners.size(); ++i) {
+    const Corner corner = star.corners[i];
+    const Index t = corner / 4;
+    const Tetrahedron& tet = tetrahedra_[t];
+    Triangle triangle{};
+    for (int k = 0; k < 3; ++k) {
+      const auto f = static_cast<Index>(face_corners[corner % 4][k]);
+      const Index w = tet[f];
+      if (place_of_vertex_[w] >= star.link.size() || star.link[place_of_vertex_[w]] != w) {
+        place_of_vertex_[w] = static_cast<Index>(star.link.size());
+        star.link.push_back(w);
+      }
+      triangle[k] = place_of_vertex_[w];
+      const Index other = behind_[4 * t + f] / 4;
+      if (gathered(other)) continue;
+      add(4 * other + corner_at(tetrahedra_[other], v));
+    }
+    star.triangles.push_back(triangle);
+  }
+}
+
+void StarMesh::collapse(const Star& star, Index target) {
+  const Index u = star.link[target];
+  for (std::size_t i = 0; i < star.corners.size(); ++i) {
+    const Corner corner = star.corners[i];
+    const Index t = corner / 4;
+    Tetrahedron& tet = tetrahedra_[t];
+    const Triangle& triangle = star.triangles[i];
+    const auto k = static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), target) - triangle.begin());
+    if (k == 3) {
+      tet[corner % 4] = u;
+      continue;
+    }
+    // Squeezed flat: what was behind the face without v now meets what was behind the face without u.
+    join(behind_[4 * t + static_cast<Index>(face_corners[corner % 4][k])], behind_[corner]);
+    tet[0] = no_index;
+    vacant_.push_back(t);
+    --living_;
+  }
+  for (const Corner corner : star.corners) {
+    if (tetrahedra_[corner / 4][0] != no_index) remember_corners(corner / 4);
+  }
+  corner_of_[star.vertex] = no_index;
+}
+
+bool StarMesh::refill(std::span<const Index> cells, std::span<const Corner> faces, std::span<const Tetrahedron> fill) {
+  // Faces of the fill are numbered from 0, those of the hole from `hole` on.
+  const auto hole = static_cast<Corner>(4 * fill.size());
+  open_.clear();
+  const auto open = [&](const Tetrahedron& tet, Index f, Corner face) {
+    Triangle vertices{tet[face_corners[f][0]], tet[face_corners[f][1]], tet[face_corners[f][2]]};
+    std::sort(vertices.begin(), vertices.end());
+    open_.push_back({vertices, face});
+  };
+  for (std::size_t t = 0; t < fill.size(); ++t) {
+    for (Index f = 0; f < 4; ++f) open(fill[t], f, static_cast<Corner>(4 * t + f));
+  }
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    open(tetrahedra_[faces[i] / 4], faces[i] % 4, hole + static_cast<Corner>(i));
+  }
+  std::sort(open_.begin(), open_.end(), [](const OpenFace& a, const OpenFace& b) {
+    return a.vertices != b.vertices ? a.vertices < b.vertices : a.face < b.face;
+  });
+  if (open_.size() % 2 != 0) return false;
+  for (std::size_t i = 0; i < open_.size(); i += 2) {
+    const bool pair = open_[i].vertices == open_[i + 1].vertices && open_[i].face < hole &&
+                      (i + 2 == open_.size() || open_[i + 2].vertices != open_[i].vertices);
+    if (!pair) return false;
+  }
+
+  outside_.clear();
+  for (const Corner face : faces) outside_.push_back(behind_[face]);
+  for (const Index cell : cells) {
+    for (const Index v : tetrahedra_[cell]) corner_of_[v] = no_index;
+    tetrahedra_[cell][0] = no_index;
+    vacant_.push_back(cell);
+  }
+  living_ -= cells.size();
+  slots_.clear();
+  for (const Tetrahedron& tet : fill) {
+    if (vacant_.empty()) {
+      vacant_.push_back(static_cast<Index>(tetrahedra_.size()));
+      tetrahedra_.emplace_back();
+      behind_.resize(behind_.size() + 4, no_index);
+      place_of_tetrahedron_.push_back(0);
+    }
+    slots_.push_back(vacant_.back());
+    vacant_.pop_back();
+    tetrahedra_[slots_.back()] = tet;
+    remember_corners(slots_.back());
+    ++living_;
+  }
+  for (std::size_t i = 0; i < open_.size(); i += 2) {
+    const Corner inner = 4 * slots_[open_[i].face / 4] + open_[i].face % 4;
+    const Corner other = open_[i + 1].face;
+    join(inner, other < hole ? 4 * slots_[other / 4] + other % 4 : outside_[other - hole]);
+  }
+  return true;
+}
+
+Index StarMesh::across(Corner face) const {
+  const Corner other = behind_[face];
+  return other == no_index ? no_index : tetrahedra_[other / 4][other % 4];
+}
+
+std::vector<Tetrahedron> StarMesh::take() {
+  std::erase_if(tetrahedra_, [](const Tetrahedron& tet) { return tet[0] == no_index; });
+  return std::move(tetrahedra_);
+}
+
+}  // namespace atomesh
