@@ -207,6 +207,10 @@ std::vector<std::string> read_format_names() {
   return names;
 }
 
+bool has_atoms_extension(const std::string& path) {
+  return format_by_extension(path) != nullptr;
+}
+
 UnitCell read_unit_cell(const std::string& path) {
   const MappedFile file(path);
   refuse_binary(path, file.bytes());

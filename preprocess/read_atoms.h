@@ -38,6 +38,8 @@ struct ReadResult {
 ReadResult read_atoms(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
 
 std::vector<std::string> read_format_names();
+// Whether the name ends like that of a format that is read (".dat", ".xyz", …).
+bool has_atoms_extension(const std::string& path);
 
 // Reads only a unit cell: the primitive and basis blocks of a .dat, which may hold atoms or none. Throws InputError
 // when there is no cell.

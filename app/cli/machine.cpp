@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "build_commit.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 
 namespace atomesh::cli {
@@ -25,8 +26,7 @@ std::string value_of(const char* path, std::string_view key) {
 }  // namespace
 
 double peak_memory_mb() {
-  const std::string kilobytes = value_of("/proc/self/status", "VmHWM");
-  return kilobytes.empty() ? 0.0 : std::stod(kilobytes) * 1024e-6;
+  return static_cast<double>(peak_memory()) * 1e-6;
 }
 
 std::string machine_name() {

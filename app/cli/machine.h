@@ -5,7 +5,7 @@
 
 namespace atomesh::cli {
 
-// The most memory this process has held so far, MB (10⁶ bytes); Linux's VmHWM.
+// The most memory this process has held so far, MB (10⁶ bytes).
 double peak_memory_mb();
 
 // Processor and number of threads used: "Intel(R) Xeon(R) …, 2 threads".

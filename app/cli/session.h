@@ -18,12 +18,16 @@ namespace atomesh::cli {
 
 class Session {
  public:
+  // From here on SIGINT and SIGTERM cancel progress().
   Session();
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
-  // Adds --threads and --json to a subcommand.
+  // Adds --threads, --memory-limit and --json to a subcommand.
   void add_options(CLI::App& app);
-  // After the command line was read: applies --threads, lets SIGINT and SIGTERM cancel progress(), and throws
-  // UsageError when --json names a folder that does not exist.
+  // After the command line was read: applies --threads and --memory-limit. Throws UsageError when --json names a folder
+  // that does not exist or the limit is below what the program itself takes, CancelledError after a signal.
   void begin();
   // After the work: throws Error when something printed did not arrive (a full disk behind standard output).
   void finish();
@@ -47,6 +51,7 @@ class Session {
 
  private:
   int threads_ = 0;
+  std::uint64_t memory_limit_mb_ = 0;
   std::string json_path_;
   ProgressBar bar_;
   Progress progress_;
