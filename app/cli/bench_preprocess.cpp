@@ -19,6 +19,7 @@ struct Part {
 constexpr Part parts[] = {
     {"tetrahedralize", bench_tetrahedralize},
     {"quantify_defects", bench_quantify_defects},
+    {"simplify", bench_simplify},
     {"pipeline", bench_pipeline},
     {"truth", bench_truth},
 };

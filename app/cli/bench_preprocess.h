@@ -34,6 +34,9 @@ struct PreprocessBench {
 void bench_tetrahedralize(const PreprocessBench& bench);
 // Crystal-defect values: atoms a second and core, beside LAMMPS.
 void bench_quantify_defects(const PreprocessBench& bench);
+// Fewer tetrahedra without loss, beside VTK's decimation, which loses; how fast, how near the bound, and what pictures
+// say.
+void bench_simplify(const PreprocessBench& bench);
 // A million atoms from .dat to .crb, stage by stage, and each row of the seed's table.
 void bench_pipeline(const PreprocessBench& bench);
 // Planted defects found, and what was found without being planted.

@@ -90,7 +90,7 @@ void bench_file(const PreprocessBench& bench, TextTable& table, std::size_t atom
   row.more = {{"atoms", material.atoms.size()},
               {"tetrahedra", material.mesh.tetrahedra.size()},
               {"mesher", report.tetrahedralize.mesher},
-              {"rate", 1e9 * million_atoms / (times.median * threads())},
+              {"rate", times.per_core(1e6 * million_atoms)},
               {"rate_unit", "atoms/s/core"},
               {"memory_mb", 1e-6 * bytes},
               {"stages", stages}};

@@ -62,10 +62,8 @@ class QuantifyTable {
   bool has_lammps() const { return !lammps_.empty(); }
 
  private:
-  double per_core(double ms, int cores) const { return static_cast<double>(atoms_) / (1e-3 * ms * cores); }
-
   void add_ours(const Crystal26& crystal, const Times& times, int cores, double bytes, std::size_t positional) {
-    const double rate = per_core(times.median, cores);
+    const double rate = times.per_core(static_cast<double>(atoms_));
     BenchRow row{"preprocess",
                  name_,
                  "quantify_defects",
@@ -109,10 +107,12 @@ class QuantifyTable {
                  {"LAMMPS centro/atom, lists at hand", times->centro_ms},
                  {"LAMMPS centro/atom, lists built", times->centro_with_lists_ms}};
     for (const auto& [what, ms] : lines) {
-      BenchRow row{"preprocess", name_, what, Json::object({{"threads", 1}}), "LAMMPS", Times{ms, ms, ms}, {}, {}, {}};
-      row.more = {{"atoms", atoms_}, {"rate", per_core(ms, 1)}, {"rate_unit", "atoms/s/core"}};
+      const Times one{ms, ms, ms, ms};
+      const double rate = one.per_core(static_cast<double>(atoms_));
+      BenchRow row{"preprocess", name_, what, Json::object({{"threads", 1}}), "LAMMPS", one, {}, {}, {}};
+      row.more = {{"atoms", atoms_}, {"rate", rate}, {"rate_unit", "atoms/s/core"}};
       bench_.result.add(std::move(row));
-      add_line(what, crystal.centro, 1, ms, per_core(ms, 1), "");
+      add_line(what, crystal.centro, 1, ms, rate, "");
     }
   }
 
@@ -137,7 +137,8 @@ void bench_quantify_defects(const PreprocessBench& bench) {
     for (const double noise : {0.0, 0.01}) table.measure_crystal(crystal, noise);
   }
   std::string caption =
-      "Periodic blocks, the unit cell given; atoms to defect values and sites, neighbour search included. ";
+      "Periodic blocks, the unit cell given; atoms to defect values and sites, neighbour search included; rates by "
+      "processor time. ";
   caption += table.has_lammps()
                  ? "LAMMPS: one process, one thread; what a call costs with its neighbour lists at hand, "
                    "and with them built anew as every snapshot needs."

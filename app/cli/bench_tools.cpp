@@ -9,10 +9,16 @@
 
 namespace atomesh::cli {
 
-Times times_of(std::vector<double> ms) {
-  std::sort(ms.begin(), ms.end());
-  const std::size_t n = ms.size();
-  return {n % 2 == 1 ? ms[n / 2] : 0.5 * (ms[n / 2 - 1] + ms[n / 2]), ms.front(), ms.back()};
+Times times_of(const std::vector<Run>& runs) {
+  const auto sorted = [&runs](double Run::*member) {
+    std::vector<double> values;
+    for (const Run& run : runs) values.push_back(run.*member);
+    std::sort(values.begin(), values.end());
+    return values;
+  };
+  const auto median = [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); };
+  const std::vector<double> ms = sorted(&Run::ms);
+  return {median(ms), ms.front(), ms.back(), median(sorted(&Run::cpu_ms))};
 }
 
 PeakMemory::PeakMemory() {
@@ -65,6 +71,7 @@ void BenchResult::add(BenchRow row) {
                             {"max_error", std::move(row.max_error)},
                             {"rmse", std::move(row.rmse)},
                             {"psnr", std::move(row.psnr)}});
+  if (row.times && row.times->cpu > 0.0) json.set("cpu_ms", row.times->cpu);
   for (auto& [key, value] : row.more) json.set(key, std::move(value));
   Json requirements = Json::array();
   for (Requirement& requirement : row.requirements) {

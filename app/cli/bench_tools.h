@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,25 +17,38 @@
 namespace atomesh::cli {
 
 struct Times {
-  double median = 0.0;  // ms
+  double median = 0.0;  // ms on the clock
   double min = 0.0;
   double max = 0.0;
+  // Median ms of processor time, all threads together: what rates "per core" are made of. Unlike the clock it leaves
+  // out the waiting for a core that somebody else uses. 0 where it is not known.
+  double cpu = 0.0;
+
+  // `count` things a second of one core.
+  double per_core(double count) const { return count / (1e-3 * cpu); }
 };
-// Throws nothing for one value; `ms` must not be empty.
-Times times_of(std::vector<double> ms);
+
+struct Run {
+  double ms = 0.0;
+  double cpu_ms = 0.0;
+};
+// `runs` must not be empty.
+Times times_of(const std::vector<Run>& runs);
 
 // `warm_up` runs that are not counted (caches, first touch of memory), then `repeats` that are. `what` is the stage
 // shown while it goes on.
 Times measure(int repeats, Session& session, const std::string& what, auto&& work, int warm_up = 1) {
-  std::vector<double> ms;
+  std::vector<Run> runs;
   for (int run = -warm_up; run < repeats; ++run) {
     session.progress().stage(what);
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpu = std::clock();
     work();
+    const std::clock_t cpu_ticks = std::clock() - cpu;
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    if (run >= 0) ms.push_back(elapsed.count());
+    if (run >= 0) runs.push_back({elapsed.count(), 1e3 * static_cast<double>(cpu_ticks) / CLOCKS_PER_SEC});
   }
-  return times_of(std::move(ms));
+  return times_of(runs);
 }
 
 // The most memory the process holds from construction on: what was freed before is first given back to the system, so

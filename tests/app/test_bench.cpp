@@ -74,6 +74,26 @@ TEST_F(Bench, DefectValuesAreTimedOnOneCoreAndOnAll) {
   EXPECT_EQ(neighbours, (std::set<int>{18, 26}));
 }
 
+TEST_F(Bench, SimplificationIsLosslessBesideVtk) {
+  std::set<std::string> strategies;
+  bool vtk = false;
+  for (const json& row : rows("simplify", "6000")) {
+    vtk = vtk || row["peer"] == "VTK";
+    if (!row.contains("lossless")) continue;
+    strategies.insert(row["settings"]["strategy"]);
+    EXPECT_TRUE(row["lossless"]) << row.dump(1);
+    EXPECT_LE(row["share_of_bound"], 100.0);
+    EXPECT_LT(row["tetrahedra_after"], row["tetrahedra_before"]);
+    EXPECT_GE(row["tetrahedra_after"], row["least_tetrahedra"]);
+    if (row.contains("valid")) {
+      EXPECT_TRUE(row["valid"]) << row.dump(1);
+      EXPECT_TRUE(row["psnr"].is_null() || row["psnr"] > 40.0) << row.dump(1);
+    }
+  }
+  EXPECT_EQ(strategies, (std::set<std::string>{"collapse", "remove"}));
+  EXPECT_TRUE(vtk);
+}
+
 TEST_F(Bench, AFileIsTimedStageByStage) {
   const json all = rows("pipeline", "4000");
   std::set<std::string> stages;

@@ -54,6 +54,7 @@ struct HeavyLibrary {
   const char* name;
   std::regex headers;
   std::set<std::string> rooms;  // that may use it
+  std::size_t files = 1;        // that may include it
 };
 
 const std::vector<HeavyLibrary>& heavy_libraries() {
@@ -61,7 +62,7 @@ const std::vector<HeavyLibrary>& heavy_libraries() {
       {"CGAL", std::regex("^CGAL/"), {"preprocess"}},
       {"TetGen", std::regex("^tetgen\\.h$"), {"preprocess"}},
       {"Embree", std::regex("^embree[0-9]/"), {"render"}},
-      {"VTK", std::regex("^vtk[A-Z]"), {"app"}},
+      {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 2},  // a writer, and a peer of the bench
       {"toml++", std::regex("^toml(\\+\\+|plusplus|/|\\.)"), {"core"}},
       {"nlohmann-json", std::regex("^nlohmann/"), {"app"}},
       {"Qt", std::regex("^(Q[A-Z]|Qt)"), {"app"}},
@@ -112,7 +113,7 @@ TEST(House, EveryIncludeFollowsTheArrows) {
   }
 }
 
-TEST(House, HeavyHeadersStayInOneSourceFileEach) {
+TEST(House, HeavyHeadersStayInTheirSourceFiles) {
   for (const HeavyLibrary& library : heavy_libraries()) {
     std::set<std::string> users;
     for (const SourceFile& file : sources()) {
@@ -124,7 +125,7 @@ TEST(House, HeavyHeadersStayInOneSourceFileEach) {
         EXPECT_TRUE(file.path.ends_with(".cpp")) << file.path << " spreads " << library.name << " to who includes it";
       }
     }
-    EXPECT_LE(users.size(), 1U) << library.name << " is in " << *users.begin() << " and " << *users.rbegin();
+    EXPECT_LE(users.size(), library.files) << library.name << " is in " << *users.begin() << " and " << *users.rbegin();
   }
 }
 
