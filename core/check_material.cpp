@@ -9,31 +9,42 @@ namespace atomesh {
 
 namespace {
 
+constexpr std::size_t items_per_check = 1 << 16;
+
 // "" when all is well. The loops run over whole arrays without leaving early, so that they vectorise: files are sound
 // nearly always.
 template <class Number>
-std::string check_finite(std::span<const Number> values, std::size_t per_item, const char* item) {
+std::string check_finite(std::span<const Number> values, std::size_t per_item, const char* item, Progress& progress) {
   bool sound = true;
-  for (const Number value : values) sound &= std::isfinite(value);
+  for (std::size_t first = 0; first < values.size(); first += items_per_check) {
+    progress.check();
+    for (const Number value : values.subspan(first, std::min(items_per_check, values.size() - first))) {
+      sound &= std::isfinite(value);
+    }
+  }
   if (sound) return "";
   const auto at = std::find_if(values.begin(), values.end(), [](Number v) { return !std::isfinite(v); });
   return std::string(item) + " " + std::to_string(static_cast<std::size_t>(at - values.begin()) / per_item) +
          " is not a finite number";
 }
 
-std::string check_points(std::span<const Vec3> points, const char* item) {
+std::string check_points(std::span<const Vec3> points, const char* item, Progress& progress) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  return points.empty() ? "" : check_finite(std::span(&points[0].x, 3 * points.size()), 3, item);
+  return points.empty() ? "" : check_finite(std::span(&points[0].x, 3 * points.size()), 3, item, progress);
 }
 
 template <std::size_t N>
-std::string check_corners(const std::vector<std::array<Index, N>>& cells, std::uint64_t vertices, const char* item) {
+std::string check_corners(const std::vector<std::array<Index, N>>& cells, std::uint64_t vertices, const char* item,
+                          Progress& progress) {
   Index largest = 0;
   bool distinct = true;
-  for (const auto& cell : cells) {
-    for (std::size_t i = 0; i < N; ++i) {
-      largest = std::max(largest, cell[i]);
-      for (std::size_t j = i + 1; j < N; ++j) distinct &= cell[i] != cell[j];
+  for (std::size_t first = 0; first < cells.size(); first += items_per_check) {
+    progress.check();
+    for (const auto& cell : std::span(cells).subspan(first, std::min(items_per_check, cells.size() - first))) {
+      for (std::size_t i = 0; i < N; ++i) {
+        largest = std::max(largest, cell[i]);
+        for (std::size_t j = i + 1; j < N; ++j) distinct &= cell[i] != cell[j];
+      }
     }
   }
   if (cells.empty() || (largest < vertices && distinct)) return "";
@@ -65,8 +76,10 @@ std::string check_species(const std::vector<Species>& table) {
 }
 
 // Each triangle is the named face of its tetrahedron, in any order of corners.
-std::string check_surface_cells(const Surface& surface, const TetMesh& mesh, std::uint64_t tetrahedra) {
+std::string check_surface_cells(const Surface& surface, const TetMesh& mesh, std::uint64_t tetrahedra,
+                                Progress& progress) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (t % items_per_check == 0) progress.check();
     const Index cell = surface.tetrahedron[t];
     if (cell >= tetrahedra) {
       return "triangle " + std::to_string(t) + " names tetrahedron " + std::to_string(cell) + ", but there are " +
@@ -88,7 +101,8 @@ std::string check_surface_cells(const Surface& surface, const TetMesh& mesh, std
 
 class Finder {
  public:
-  Finder(const Material& material, const MaterialCounts& counts) : m_(material), counts_(counts) {}
+  Finder(const Material& material, const MaterialCounts& counts, Progress& progress)
+      : m_(material), counts_(counts), progress_(progress) {}
 
   std::optional<MaterialProblem> find() {
     check_atoms();
@@ -117,18 +131,18 @@ class Finder {
   void check_atoms() {
     const Atoms& atoms = m_.atoms;
     report("species", check_species(atoms.species_table));
-    report("box", check_points(std::span(&atoms.box.origin, 1), "the origin, number"));
-    report("box", check_points(atoms.box.vectors, "vector"));
+    report("box", check_points(std::span(&atoms.box.origin, 1), "the origin, number", progress_));
+    report("box", check_points(atoms.box.vectors, "vector", progress_));
     if (m_.unit_cell) {
-      report("unit cell", check_points(m_.unit_cell->primitive, "primitive vector"));
+      report("unit cell", check_points(m_.unit_cell->primitive, "primitive vector", progress_));
       for (const BasisAtom& atom : m_.unit_cell->basis) {
-        report("unit cell", check_points(std::span(&atom.position, 1), "a basis atom, number"));
+        report("unit cell", check_points(std::span(&atom.position, 1), "a basis atom, number", progress_));
         report("unit cell", check_species({{atom.species, 0.0}}));
       }
     }
     if (counts_.atoms >= no_index) report("positions", "more than 4,294,967,294 atoms");
     check_length("positions", atoms.positions, counts_.atoms);
-    report("positions", check_points(atoms.positions, "atom"));
+    report("positions", check_points(atoms.positions, "atom", progress_));
     if (atoms.species.size() != atoms.positions.size()) report("atom species", "not one for each atom");
     std::uint16_t largest = 0;
     for (const std::uint16_t species : atoms.species) largest = std::max(largest, species);
@@ -139,7 +153,8 @@ class Finder {
     check_length("ids", atoms.ids, counts_.atoms);
     for (const Column& column : atoms.columns) {
       if (column.values.size() != counts_.atoms) report("scalars", column.name + ": not one value for each atom");
-      report("scalars", check_finite(std::span<const double>(column.values), 1, (column.name + ": atom").c_str()));
+      report("scalars",
+             check_finite(std::span<const double>(column.values), 1, (column.name + ": atom").c_str(), progress_));
     }
   }
 
@@ -148,7 +163,7 @@ class Finder {
     if (counts_.vertices >= no_index) report("vertices", "more than 4,294,967,294 vertices");
     if (counts_.tetrahedra >= no_index) report("tetrahedra", "more than 4,294,967,294 tetrahedra");
     check_length("vertices", mesh.vertices, counts_.vertices);
-    report("vertices", check_points(mesh.vertices, "vertex"));
+    report("vertices", check_points(mesh.vertices, "vertex", progress_));
     if (mesh.vertex_atom.size() != mesh.vertices.size()) report("vertex atoms", "not one for each vertex");
     for (std::size_t v = 0; v < mesh.vertex_atom.size(); ++v) {
       if (mesh.vertex_atom[v] < counts_.atoms || mesh.vertex_atom[v] == no_index) continue;
@@ -157,12 +172,12 @@ class Finder {
       break;
     }
     check_length("tetrahedra", mesh.tetrahedra, counts_.tetrahedra);
-    report("tetrahedra", check_corners(mesh.tetrahedra, counts_.vertices, "tetrahedron"));
+    report("tetrahedra", check_corners(mesh.tetrahedra, counts_.vertices, "tetrahedron", progress_));
   }
 
   void check_surface() {
     const Surface& surface = m_.surface;
-    report("surface", check_corners(surface.triangles, counts_.vertices, "triangle"));
+    report("surface", check_corners(surface.triangles, counts_.vertices, "triangle", progress_));
     if (surface.triangles.size() >= no_index) report("surface", "more than 4,294,967,294 triangles");
     check_length("surface cells", surface.tetrahedron, surface.triangles.size());
     if (surface.face.size() != surface.tetrahedron.size()) report("surface faces", "not one for each triangle");
@@ -170,7 +185,7 @@ class Finder {
       report("surface faces", "a face beyond 3");
     }
     if (!problem_ && !surface.tetrahedron.empty()) {
-      report("surface cells", check_surface_cells(surface, m_.mesh, counts_.tetrahedra));
+      report("surface cells", check_surface_cells(surface, m_.mesh, counts_.tetrahedra, progress_));
     }
   }
 
@@ -178,13 +193,13 @@ class Finder {
     const Defects& defects = m_.defects;
     for (const auto* values : {&defects.positional, &defects.vacancy, &defects.extra}) {
       check_length("defects", *values, counts_.atoms);
-      report("defects", check_finite(std::span<const float>(*values), 1, "value of atom"));
+      report("defects", check_finite(std::span<const float>(*values), 1, "value of atom", progress_));
     }
     if (defects.vacancy.size() != defects.positional.size() || defects.extra.size() != defects.positional.size()) {
       report("defects", "some of the three values are missing");
     }
     for (const VacancySite& site : defects.vacancies) {
-      report("vacancies", check_points(std::span(&site.position, 1), "a position, number"));
+      report("vacancies", check_points(std::span(&site.position, 1), "a position, number", progress_));
       if (site.species >= m_.atoms.species_table.size()) report("vacancies", "a species that is not in the table");
     }
     for (const ExtraAtom& extra : defects.extras) {
@@ -205,6 +220,7 @@ class Finder {
 
   const Material& m_;
   const MaterialCounts counts_;
+  Progress& progress_;
   std::optional<MaterialProblem> problem_;
 };
 
@@ -214,8 +230,9 @@ MaterialCounts counts_of(const Material& material) {
   return {material.atoms.size(), material.mesh.vertices.size(), material.mesh.tetrahedra.size()};
 }
 
-std::optional<MaterialProblem> find_problem(const Material& material, const MaterialCounts& counts) {
-  return Finder(material, counts).find();
+std::optional<MaterialProblem> find_problem(const Material& material, const MaterialCounts& counts,
+                                            Progress& progress) {
+  return Finder(material, counts, progress).find();
 }
 
 }  // namespace atomesh

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/material.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -26,6 +27,7 @@ struct MaterialProblem {
 // tetrahedron that names a vertex twice, a surface triangle that is not the face of its tetrahedron, species names that
 // are empty, repeated or have blanks. Arrays that are empty are taken as not read. Geometry (orientation, closedness)
 // is not looked at: validate() does that.
-std::optional<MaterialProblem> find_problem(const Material& material, const MaterialCounts& counts);
+std::optional<MaterialProblem> find_problem(const Material& material, const MaterialCounts& counts,
+                                            Progress& progress = no_progress());
 
 }  // namespace atomesh

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "core/error.h"
@@ -72,6 +73,7 @@ void ungroup(std::size_t element, std::span<const std::byte> from, std::byte* to
 std::vector<std::byte> pack(std::span<const std::byte> block, std::size_t element) {
   thread_local std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), &ZSTD_freeCCtx);
   thread_local std::vector<std::byte> regrouped;
+  if (!context) throw std::bad_alloc();
   std::span<const std::byte> input = block;
   if (element > 1) {
     regrouped.resize(block.size());
@@ -90,6 +92,7 @@ std::vector<std::byte> pack(std::span<const std::byte> block, std::size_t elemen
 bool unpack(std::span<const std::byte> frame, std::size_t element, std::span<std::byte> to) {
   thread_local std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
   thread_local std::vector<std::byte> grouped;
+  if (!context) throw std::bad_alloc();
   if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != to.size()) return false;
   std::byte* output = to.data();
   if (element > 1) {

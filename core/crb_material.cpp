@@ -211,7 +211,7 @@ class MaterialReader {
       if (wanted) (this->*step)();
       progress_.update(++done / static_cast<double>(steps.size() + 1));
     }
-    if (const auto problem = find_problem(m_, {counts_.atoms, counts_.vertices, counts_.tetrahedra})) {
+    if (const auto problem = find_problem(m_, {counts_.atoms, counts_.vertices, counts_.tetrahedra}, progress_)) {
       file_.fail(problem->section, problem->what);
     }
     progress_.update(1.0);

@@ -57,7 +57,7 @@ void write_material(const std::string& path, const Material& material, const Wri
     throw UsageError(path +
                      ": a material is written as .crb (binary) or .crt (text); give the file one of these endings");
   }
-  if (const auto problem = find_problem(material, counts_of(material))) {
+  if (const auto problem = find_problem(material, counts_of(material), progress)) {
     throw Error(path + ": this material cannot be written: " + problem->section + ": " + problem->what);
   }
   progress.stage("write");

@@ -55,10 +55,12 @@ Outcome run_in(const fs::path& folder, const std::vector<std::string>& arguments
     std::this_thread::sleep_for(std::chrono::milliseconds(interrupt_after_ms));
     kill(child, SIGINT);
   }
+  const auto signalled = std::chrono::steady_clock::now();
   int status = 0;
   waitpid(child, &status, 0);
+  const std::chrono::duration<double, std::milli> went_on = std::chrono::steady_clock::now() - signalled;
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), device.empty() ? text_of(out) : "",
-                  text_of(err)};
+                  text_of(err), went_on.count()};
   if (device.empty()) fs::remove(out);
   fs::remove(err);
   return outcome;

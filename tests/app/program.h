@@ -11,6 +11,7 @@ struct Outcome {
   int exit_code = -1;  // 128 + signal when a signal ended it
   std::string out;
   std::string err;
+  double ms_after_signal = 0.0;  // of run_interrupted: how long it went on
 };
 
 // A fresh temporary folder in which atomesh is run; removed at the end.

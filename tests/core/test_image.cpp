@@ -167,5 +167,13 @@ TEST(Png, EveryFlippedBitIsReadTheSameOrAnInputError) {
   EXPECT_GT(refused, bytes.size() * 4);
 }
 
+TEST(Png, WritingCanBeCancelledAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  Progress progress;
+  progress.request_cancel();
+  EXPECT_THROW(write_png(folder.file("a.png"), random_image(9, 9, false), {}, progress), CancelledError);
+  EXPECT_EQ(folder.count(), 0U);
+}
+
 }  // namespace
 }  // namespace atomesh

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/surface.h"
 #include "tests/support/meshes.h"
 
@@ -127,6 +128,20 @@ TEST(ValidateSurface, FindsEachFault) {
   EXPECT_NE(complaint(bad).find("is not the face it names"), std::string::npos);
 
   EXPECT_NE(complaint(Surface{}).find("not the boundary"), std::string::npos);
+}
+
+TEST(Surface, EveryPassCanBeCancelled) {
+  const TetMesh mesh = test::cubes(3, never);
+  const Surface surface = extract_surface(mesh);
+  Progress progress;
+  progress.request_cancel();
+  EXPECT_THROW(extract_surface(mesh, progress), CancelledError);
+  EXPECT_THROW(face_neighbours(mesh, progress), CancelledError);
+  EXPECT_THROW(volume(mesh, progress), CancelledError);
+  EXPECT_THROW(min_dihedral_degrees(mesh, progress), CancelledError);
+  EXPECT_THROW(is_closed(surface, progress), CancelledError);
+  EXPECT_THROW(validate(mesh, 10, progress), CancelledError);
+  EXPECT_THROW(validate(surface, mesh, 10, progress), CancelledError);
 }
 
 }  // namespace
