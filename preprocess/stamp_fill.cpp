@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
+#include <unordered_map>
 
 #include "core/circumsphere.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/tet_mesh.h"
+#include "preprocess/canonical_tetrahedra.h"
 #include "preprocess/gather_polytopes.h"
 #include "preprocess/tetrahedralize.h"
 
@@ -27,37 +28,147 @@ Tetrahedron global(const Tetrahedron& t, std::span<const Index> open) {
   return {open[t[0]], open[t[1]], open[t[2]], open[t[3]]};
 }
 
-// Keeps those of the open points' tetrahedra that may be missing: of radius up to the largest, empty of all points and
-// not stamped; slivers between them too.
-void keep_missing(const StampedSample& sample, std::span<const Index> open, std::span<const Vec3> places,
-                  std::vector<Tetrahedron>& tetrahedra, Progress& progress) {
-  const PolytopeTolerance tolerance = tolerance_of(sample);
-  const double largest = sample.options().largest_radius;
-  const std::vector<std::uint8_t> sliver = find_slivers(tetrahedra, places, tolerance);
-  std::vector<std::uint8_t> keep(tetrahedra.size(), 0);
-  parallel_for(tetrahedra.size(), items_per_range, [&](std::size_t begin, std::size_t end) {
-    progress.check();
-    std::vector<Index> slots;
-    for (std::size_t n = begin; n < end; ++n) {
-      const Tetrahedron& t = tetrahedra[n];
-      const Vec3 &a = places[t[0]], &b = places[t[1]], &c = places[t[2]], &d = places[t[3]];
-      if (sliver[n] != 0) {
-        const double longest = std::max({glm::distance(a, b), glm::distance(a, c), glm::distance(a, d),
-                                         glm::distance(b, c), glm::distance(b, d), glm::distance(c, d)});
-        keep[n] = longest <= 2.0 * largest && !sample.in_one_polytope(global(t, open)) ? 1 : 0;
-        continue;
-      }
-      const Sphere sphere = circumsphere(a, b, c, d);
-      if (!(sphere.radius <= largest) || sample.in_one_polytope(global(t, open))) continue;
-      const double inside = sphere.radius * (1.0 - tolerance.sphere);
-      keep[n] = sample.each_in_ball(sphere.center, inside, slots, [](Index) { return false; }) ? 1 : 0;
+// A tetrahedron that may be missing, and its sphere.
+struct Missing {
+  Tetrahedron tetrahedron;  // indices into all points
+  Sphere sphere;
+};
+
+// The open points cut into blocks, so that several threads have something to do and no triangulation spans the hollow
+// where everything is stamped. A cell belongs to the block that its centre lies in; its corners are not further than
+// the largest radius from there.
+class Blocks {
+ public:
+  Blocks(const StampedSample& sample, std::span<const Index> open) {
+    Bounds bounds;
+    for (const Index i : open) bounds.add(sample.points()[i]);
+    min_ = bounds.min;
+    const double halo = sample.options().largest_radius * (1.0 + 1e-6);
+    for (int k = 0; k < 3; ++k) {
+      const double extent = bounds.extent()[k];
+      count_[k] = std::clamp(static_cast<int>(extent / (halos_per_block * halo)), 1, most_blocks);
+      edge_[k] = extent > 0.0 ? extent / count_[k] : 1.0;
     }
-  });
-  std::size_t kept = 0;
-  for (std::size_t n = 0; n < tetrahedra.size(); ++n) {
-    if (keep[n] != 0) tetrahedra[kept++] = tetrahedra[n];
+    members_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
+    for (const Index i : open) {
+      const std::array<int, 3> low = place(sample.points()[i] - halo), high = place(sample.points()[i] + halo);
+      for (int a = low[0]; a <= high[0]; ++a) {
+        for (int b = low[1]; b <= high[1]; ++b) {
+          for (int c = low[2]; c <= high[2]; ++c) members_[number({a, b, c})].push_back(i);
+        }
+      }
+    }
   }
-  tetrahedra.resize(kept);
+
+  std::size_t size() const { return members_.size(); }
+  const std::vector<Index>& members(std::size_t block) const { return members_[block]; }  // ascending
+  // Places outside the bounds belong to the nearest block.
+  std::size_t of(const Vec3& position) const { return number(place(position)); }
+
+ private:
+  static constexpr double halos_per_block = 12.0;
+  static constexpr int most_blocks = 64;  // along an axis
+
+  std::array<int, 3> place(const Vec3& p) const {
+    std::array<int, 3> result;
+    for (int k = 0; k < 3; ++k) {
+      result[k] = static_cast<int>(std::clamp(std::floor((p[k] - min_[k]) / edge_[k]), 0.0, count_[k] - 1.0));
+    }
+    return result;
+  }
+  std::size_t number(const std::array<int, 3>& p) const {
+    return (static_cast<std::size_t>(p[0]) * count_[1] + p[1]) * count_[2] + p[2];
+  }
+
+  Vec3 min_{0.0}, edge_{1.0};
+  std::array<int, 3> count_{1, 1, 1};
+  std::vector<std::vector<Index>> members_;
+};
+
+// Of the tetrahedra of a block's points, those that may be missing: of radius up to the largest, empty of all points
+// and not stamped. Slivers have no sphere to speak of; the polytopes they are scraps of are known by their other
+// pieces.
+std::vector<Missing> find_missing(const StampedSample& sample, const Blocks& blocks, std::size_t block,
+                                  const Progress& progress) {
+  const std::vector<Index>& members = blocks.members(block);
+  std::vector<Missing> missing;
+  if (members.size() < 4) return missing;
+  std::vector<Vec3> places;
+  for (const Index i : members) places.push_back(sample.points()[i]);
+  // The triangulation is told of a cancel without sharing the caller's listener among threads.
+  Progress quiet([&](std::string_view, double) {
+    if (progress.cancelled()) throw CancelledError();
+  });
+  const std::vector<Tetrahedron> tetrahedra = delaunay_cgal(places, quiet);
+  const PolytopeTolerance tolerance = tolerance_of(sample);
+  std::vector<Index> slots;
+  for (std::size_t n = 0; n < tetrahedra.size(); ++n) {
+    if (n % 1024 == 0) progress.check();
+    // In one order of corners, so that two blocks get one sphere to the last bit and agree whose it is.
+    const Tetrahedron t = canonical(global(tetrahedra[n], members));
+    const auto corner = [&](int i) -> const Vec3& { return sample.points()[t[i]]; };
+    const Sphere sphere = circumsphere(corner(0), corner(1), corner(2), corner(3));
+    if (!(sphere.radius <= sample.options().largest_radius) || blocks.of(sphere.center) != block) continue;
+    if (find_slivers({&t, 1}, sample.points(), tolerance)[0] != 0 || sample.in_one_polytope(t)) continue;
+    const double inside = sphere.radius * (1.0 - tolerance.sphere);
+    if (sample.each_in_ball(sphere.center, inside, slots, [](Index) { return false; })) missing.push_back({t, sphere});
+  }
+  return missing;
+}
+
+std::vector<Missing> find_missing(const StampedSample& sample, std::span<const Index> open, const Progress& progress) {
+  const Blocks blocks(sample, open);
+  std::vector<std::vector<Missing>> parts(blocks.size());
+  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) parts[b] = find_missing(sample, blocks, b, progress);
+  });
+  std::vector<Missing> missing;
+  for (auto& part : parts) {
+    missing.insert(missing.end(), part.begin(), part.end());
+    part = {};
+  }
+  return missing;
+}
+
+// Tetrahedra with one sphere are one polytope, for the sphere is empty: pairs (polytope, tetrahedron), ascending.
+std::vector<std::pair<Index, Index>> gather(const std::vector<Missing>& missing, double tolerance, double largest) {
+  const double edge = 0.01 * largest;  // of the cells that centres are looked up in
+  std::unordered_multimap<std::uint64_t, Index> first_of;
+  std::vector<std::pair<Index, Index>> members;
+  for (std::size_t n = 0; n < missing.size(); ++n) {
+    const Sphere& sphere = missing[n].sphere;
+    const double near = tolerance * sphere.radius;
+    std::array<std::array<std::int64_t, 2>, 3> cells;
+    for (int k = 0; k < 3; ++k) {
+      cells[k] = {static_cast<std::int64_t>(std::floor((sphere.center[k] - near) / edge)),
+                  static_cast<std::int64_t>(std::floor((sphere.center[k] + near) / edge))};
+    }
+    const auto key = [](std::int64_t a, std::int64_t b, std::int64_t c) {
+      constexpr std::int64_t mask = (1 << 21) - 1;
+      return static_cast<std::uint64_t>((a & mask) << 42 | (b & mask) << 21 | (c & mask));
+    };
+    Index polytope = static_cast<Index>(n);
+    for (std::int64_t a = cells[0][0]; a <= cells[0][1]; ++a) {
+      for (std::int64_t b = cells[1][0]; b <= cells[1][1]; ++b) {
+        for (std::int64_t c = cells[2][0]; c <= cells[2][1]; ++c) {
+          const auto [begin, end] = first_of.equal_range(key(a, b, c));
+          for (auto other = begin; other != end; ++other) {
+            const Sphere& s = missing[other->second].sphere;
+            if (glm::distance(s.center, sphere.center) <= near && std::abs(s.radius - sphere.radius) <= near) {
+              polytope = std::min(polytope, other->second);
+            }
+          }
+        }
+      }
+    }
+    if (polytope == n) {
+      const auto cell = [&](int k) { return static_cast<std::int64_t>(std::floor(sphere.center[k] / edge)); };
+      first_of.emplace(key(cell(0), cell(1), cell(2)), polytope);
+    }
+    members.emplace_back(polytope, static_cast<Index>(n));
+  }
+  std::sort(members.begin(), members.end());
+  return members;
 }
 
 std::vector<Index> ranks_by_height(std::span<const Vec3> points, const Vec3& direction) {
@@ -163,26 +274,32 @@ bool fits(const StampedSample& sample, const std::vector<Triangle>& seam, const 
 
 std::optional<std::vector<Tetrahedron>> fill_open(const StampedSample& sample, const LatticeSites& sites,
                                                   std::span<const Index> open, Progress& progress) {
+  const PolytopeTolerance tolerance = tolerance_of(sample);
+  const std::vector<Missing> missing = find_missing(sample, open, progress);
+  const auto members = gather(missing, tolerance.sphere, sample.options().largest_radius);
+  progress.check();
+
+  // From here in the numbers of the open points alone.
   TetMesh mesh;
   for (const Index i : open) mesh.vertices.push_back(sample.points()[i]);
-  std::vector<Tetrahedron> filled;
-  if (open.size() >= 4) mesh.tetrahedra = delaunay_cgal(mesh.vertices, progress);
-  keep_missing(sample, open, mesh.vertices, mesh.tetrahedra, progress);
-
-  const PolytopeTolerance tolerance = tolerance_of(sample);
-  const auto sliver = find_slivers(mesh.tetrahedra, mesh.vertices, tolerance);
-  const auto members = gather_polytopes(mesh.tetrahedra, mesh.vertices, face_neighbours(mesh), sliver, tolerance);
-  progress.check();
+  std::vector<Tetrahedron> pieces;
+  for (const Missing& m : missing) {
+    Tetrahedron local;
+    for (int i = 0; i < 4; ++i) {
+      local[i] = static_cast<Index>(std::lower_bound(open.begin(), open.end(), m.tetrahedron[i]) - open.begin());
+    }
+    pieces.push_back(local);
+  }
   const std::vector<Index> rank = ranks_by_height(mesh.vertices, sample.direction());
-  if (!cut_polytopes(mesh.tetrahedra, mesh.vertices, members, rank, tolerance, filled)) return std::nullopt;
+  if (!cut_polytopes(pieces, mesh.vertices, members, rank, tolerance, mesh.tetrahedra)) return std::nullopt;
   progress.check();
-  mesh.tetrahedra = filled;
   std::vector<std::array<Index, 4>> neighbours;
   try {
     neighbours = face_neighbours(mesh);
   } catch (const Error&) {
     return std::nullopt;  // a face of three
   }
+  std::vector<Tetrahedron> filled = std::move(mesh.tetrahedra);
   for (Tetrahedron& t : filled) t = global(t, open);
   if (!fits(sample, stamped_seam(sample, sites, open), filled, neighbours, progress)) return std::nullopt;
   return filled;
