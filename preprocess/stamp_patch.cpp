@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -49,6 +50,23 @@ bool StampedPatch::lay_bricks(std::span<const Index> atoms, std::span<const Latt
       max[k] = std::max(max[k], of[i].cell[k]);
     }
   }
+  // Polytopes are kept at their anchors, which may lie in cells without atoms.
+  std::vector<std::vector<Cell>> anchors(pattern_.basis());
+  Cell before{}, behind{};
+  for (std::size_t b = 0; b < anchors.size(); ++b) {
+    anchors[b].push_back({0, 0, 0});
+    for (const PatternCorner& c : pattern_.around(b)) anchors[b].push_back(c.cell);
+    std::sort(anchors[b].begin(), anchors[b].end());
+    anchors[b].erase(std::unique(anchors[b].begin(), anchors[b].end()), anchors[b].end());
+    for (const Cell& cell : anchors[b]) {
+      for (int k = 0; k < 3; ++k) {
+        before[k] = std::min(before[k], cell[k]);
+        behind[k] = std::max(behind[k], cell[k]);
+      }
+    }
+  }
+  min_ = min_ + before;
+  max = max + behind;
   double places = 1.0;
   for (int k = 0; k < 3; ++k) {
     if (min_[k] < -limit || max[k] > limit) return false;
@@ -63,7 +81,9 @@ bool StampedPatch::lay_bricks(std::span<const Index> atoms, std::span<const Latt
                bricks_[2] +
            static_cast<std::size_t>((cell[2] - min_[2]) >> 2);
   };
-  for (const Index i : atoms) brick_[place(of[i].cell)] = 0;
+  for (const Index i : atoms) {
+    for (const Cell& cell : anchors[of[i].basis]) brick_[place(of[i].cell + cell)] = 0;
+  }
   for (std::uint32_t a = 0, n = 0; a < bricks_[0]; ++a) {
     for (std::uint32_t b = 0; b < bricks_[1]; ++b) {
       for (std::uint32_t c = 0; c < bricks_[2]; ++c, ++n) {
@@ -109,37 +129,61 @@ void StampedPatch::keep_clear_of(const Vec3& position) {
   }
 }
 
-bool StampedPatch::fits(const PatternPolytope& polytope, const Cell& anchor, double largest_radius,
-                        double tolerance) const {
-  std::array<Index, pull_polytope_corners> corner;
+std::uint64_t StampedPatch::find_corners(const PatternPolytope& polytope, const Cell& anchor, Index* corner) const {
   const std::size_t count = polytope.corners.size();
+  std::uint64_t occupied = 0;
+  std::size_t empty = 0;
   for (std::size_t c = 0; c < count; ++c) {
     const SiteOffset& s = polytope.corners[c];
     corner[c] = atom(anchor + offset_cell(s), s.basis);
-    if (corner[c] == no_index) return false;
-  }
-  const auto at = [&](std::size_t c) -> const Vec3& { return points_[corner[c]]; };
-  const auto& f = polytope.frame;
-  const Sphere sphere = circumsphere(at(f[0]), at(f[1]), at(f[2]), at(f[3]));
-  if (!(sphere.radius <= largest_radius)) return false;
-  const double moved = glm::distance(sphere.center, pattern_.corner(anchor) + polytope.center);
-  if (!(moved + std::abs(sphere.radius - polytope.radius) <= sphere_slack * pattern_.in_place())) return false;
-  const double off = tolerance * sphere.radius;
-  if (count > 4) {
-    for (std::size_t c = 0; c < count; ++c) {
-      if (!(std::abs(glm::distance(at(c), sphere.center) - sphere.radius) <= off)) return false;
+    if (corner[c] != no_index) {
+      occupied |= std::uint64_t{1} << c;
+    } else if (++empty + 4 > count) {
+      return 0;
     }
+  }
+  return occupied;
+}
+
+const PatternCut& StampedPatch::cut_of(Index polytope, std::uint64_t occupied) const {
+  const PatternPolytope& p = pattern_.polytopes()[polytope];
+  if (static_cast<std::size_t>(std::popcount(occupied)) == p.corners.size()) return p.whole;
+  const std::scoped_lock guard(cuts_->lock);
+  const auto [place, added] = cuts_->cut.try_emplace({polytope, occupied});
+  if (added) place->second = pattern_.cut(p, occupied);
+  return place->second;
+}
+
+std::pair<StampedPatch::State, std::size_t> StampedPatch::fit(Index number, const Cell& anchor, double largest_radius,
+                                                              double tolerance) const {
+  constexpr std::pair<State, std::size_t> none{State::open, 0};
+  const PatternPolytope& polytope = pattern_.polytopes()[number];
+  std::array<Index, pull_polytope_corners> corner;
+  const std::uint64_t occupied = find_corners(polytope, anchor, corner.data());
+  if (occupied == 0) return none;
+  const PatternCut& cut = cut_of(number, occupied);
+  if (cut.tetrahedra.empty()) return none;
+  const auto at = [&](std::size_t c) -> const Vec3& { return points_[corner[c]]; };
+  const auto& f = cut.frame;
+  const Sphere sphere = circumsphere(at(f[0]), at(f[1]), at(f[2]), at(f[3]));
+  if (!(sphere.radius <= largest_radius)) return none;
+  const double moved = glm::distance(sphere.center, pattern_.corner(anchor) + polytope.center);
+  if (!(moved + std::abs(sphere.radius - polytope.radius) <= sphere_slack * pattern_.in_place())) return none;
+  const double off = tolerance * sphere.radius;
+  const std::size_t count = polytope.corners.size();
+  for (std::size_t c = 0; count > 4 && c < count; ++c) {
+    if (corner[c] == no_index) continue;
+    if (!(std::abs(glm::distance(at(c), sphere.center) - sphere.radius) <= off)) return none;
   }
   for (const SiteOffset& s : polytope.close) {
     const Index near = atom(anchor + offset_cell(s), s.basis);
-    if (near != no_index && !(glm::distance(points_[near], sphere.center) > sphere.radius + off)) return false;
+    if (near != no_index && !(glm::distance(points_[near], sphere.center) > sphere.radius + off)) return none;
   }
-  return true;
+  return {&cut == &polytope.whole ? State::whole : State::part, cut.tetrahedra.size()};
 }
 
 std::size_t StampedPatch::stamp(double largest_radius, double tolerance, Progress& progress) {
   const auto& polytopes = pattern_.polytopes();
-  const std::size_t basis = pattern_.basis();
   parallel_for(first_cell_.size(), bricks_per_range, [&](std::size_t begin, std::size_t end) {
     progress.check();
     for (std::size_t brick = begin; brick < end; ++brick) {
@@ -148,10 +192,10 @@ std::size_t StampedPatch::stamp(double largest_radius, double tolerance, Progres
         const std::size_t s = brick * cells_per_brick + local;
         for (std::size_t p = 0; p < polytopes.size(); ++p) {
           State& state = state_[s * polytopes.size() + p];
-          if (state != State::open || atoms_[s * basis + polytopes[p].corners[0].basis] == no_index) continue;
-          if (!fits(polytopes[p], cell_of(brick, local), largest_radius, tolerance)) continue;
-          state = State::stamped;
-          made += polytopes[p].tetrahedra.size();
+          if (state != State::open) continue;
+          const auto [found, tetrahedra] = fit(static_cast<Index>(p), cell_of(brick, local), largest_radius, tolerance);
+          state = found;
+          made += tetrahedra;
         }
       }
       tetrahedra_[brick] = made;
@@ -175,12 +219,10 @@ void StampedPatch::write(std::span<Tetrahedron> tetrahedra, Progress& progress) 
         const std::size_t s = brick * cells_per_brick + local;
         const Cell anchor = cell_of(brick, local);
         for (std::size_t p = 0; p < polytopes.size(); ++p) {
-          if (state_[s * polytopes.size() + p] != State::stamped) continue;
-          for (std::size_t c = 0; c < polytopes[p].corners.size(); ++c) {
-            const SiteOffset& offset = polytopes[p].corners[c];
-            corner[c] = atom(anchor + offset_cell(offset), offset.basis);
-          }
-          for (const auto& t : polytopes[p].tetrahedra) {
+          const State state = state_[s * polytopes.size() + p];
+          if (state != State::whole && state != State::part) continue;
+          const std::uint64_t occupied = find_corners(polytopes[p], anchor, corner.data());
+          for (const auto& t : cut_of(static_cast<Index>(p), occupied).tetrahedra) {
             tetrahedra[next++] = {corner[t[0]], corner[t[1]], corner[t[2]], corner[t[3]]};
           }
         }
@@ -191,7 +233,7 @@ void StampedPatch::write(std::span<Tetrahedron> tetrahedra, Progress& progress) 
 
 bool StampedPatch::whole(const LatticeSite& site) const {
   for (const PatternCorner& c : pattern_.around(site.basis)) {
-    if (!stamped(site.cell + c.cell, c.polytope)) return false;
+    if (state(site.cell + c.cell, c.polytope) != State::whole) return false;
   }
   return true;
 }
@@ -201,6 +243,39 @@ bool StampedPatch::any_stamped(const LatticeSite& site) const {
     if (stamped(site.cell + c.cell, c.polytope)) return true;
   }
   return false;
+}
+
+std::vector<Triangle> StampedPatch::outside_faces(const LatticeSite& site) const {
+  // All that are not known to have a whole polytope on both sides, then without those that are seen from both.
+  std::vector<Triangle> seen;
+  std::array<Index, pull_polytope_corners> corner;
+  for (const PatternCorner& c : pattern_.around(site.basis)) {
+    const Cell anchor = site.cell + c.cell;
+    if (!stamped(anchor, c.polytope)) continue;
+    const PatternPolytope& polytope = pattern_.polytopes()[c.polytope];
+    const PatternCut& cut = cut_of(c.polytope, find_corners(polytope, anchor, corner.data()));
+    const bool is_whole = &cut == &polytope.whole;
+    for (std::size_t f = 0; f < cut.faces.size(); ++f) {
+      const auto& face = cut.faces[f];
+      if (face[0] != c.corner && face[1] != c.corner && face[2] != c.corner) continue;
+      if (is_whole) {
+        const PatternNeighbour& behind = polytope.neighbours[f];
+        if (state(anchor + behind.cell, behind.polytope) == State::whole) continue;
+      }
+      seen.push_back({corner[face[0]], corner[face[1]], corner[face[2]]});
+    }
+  }
+  std::vector<Triangle> outside;
+  for (const Triangle& t : seen) {
+    const bool inside = std::any_of(seen.begin(), seen.end(), [&](const Triangle& o) {
+      for (int i = 0; i < 3; ++i) {
+        if (o[i] == t[0]) return o[(i + 1) % 3] == t[2] && o[(i + 2) % 3] == t[1];
+      }
+      return false;
+    });
+    if (!inside) outside.push_back(t);
+  }
+  return outside;
 }
 
 bool StampedPatch::in_one_polytope(std::span<const LatticeSite> sites) const {

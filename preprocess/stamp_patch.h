@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +21,9 @@ inline Cell operator+(const Cell& a, const Cell& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
+// Where corners of a polytope are empty but its sphere is too, what the others span is a Delaunay cell like the whole:
+// half octahedra at the surface, cubes that lack a corner at a vacancy.
+//
 // Cells are kept in bricks of 4×4×4, only where there are atoms: memory grows with the atoms, whatever the patch's
 // shape, but for a pointer a brick of its bounds.
 class StampedPatch {
@@ -44,11 +50,7 @@ class StampedPatch {
   // Writes them.
   void write(std::span<Tetrahedron> tetrahedra, Progress& progress) const;
 
-  bool stamped(const Cell& anchor, std::size_t polytope) const {
-    const std::size_t s = slot(anchor);
-    return s != nowhere && state_[s * pattern_.polytopes().size() + polytope] == State::stamped;
-  }
-  // Whether every polytope around an atom is stamped.
+  // Whether every polytope around an atom is stamped whole.
   bool whole(const LatticeSite& site) const;
   bool any_stamped(const LatticeSite& site) const;
   // Whether the sites, all of this patch, are corners of one stamped polytope.
@@ -56,13 +58,22 @@ class StampedPatch {
   // Calls body(triangle) for the triangles at an atom with a stamped polytope before and none behind them, seen
   // counter-clockwise from behind (outside). Stops and returns false when body does.
   template <class Body>
-  bool each_outside_face(const LatticeSite& site, Body&& body) const;
+  bool each_outside_face(const LatticeSite& site, Body&& body) const {
+    const std::vector<Triangle> faces = outside_faces(site);
+    return std::all_of(faces.begin(), faces.end(), body);
+  }
   // Calls body(atom) for the atoms in place within `radius` of a place. Stops and returns false when body does.
   template <class Body>
   bool each_in_ball(const Vec3& center, double radius, Body&& body) const;
 
  private:
-  enum class State : std::uint8_t { open, stamped, kept_clear };
+  // `part`: some corners are empty, and what the others span is stamped.
+  enum class State : std::uint8_t { open, whole, part, kept_clear };
+  // What polytopes with empty corners are cut into, kept for the next with the same.
+  struct Cuts {
+    std::mutex lock;
+    std::map<std::pair<Index, std::uint64_t>, PatternCut> cut;
+  };
   static constexpr std::size_t nowhere = ~std::size_t{0};
   static constexpr std::size_t cells_per_brick = 64;
 
@@ -82,7 +93,21 @@ class StampedPatch {
     const auto n = static_cast<int>(local);
     return first_cell_[brick] + Cell{n >> 4, n >> 2 & 3, n & 3};
   }
-  bool fits(const PatternPolytope& polytope, const Cell& anchor, double largest_radius, double tolerance) const;
+  State state(const Cell& anchor, std::size_t polytope) const {
+    const std::size_t s = slot(anchor);
+    return s == nowhere ? State::open : state_[s * pattern_.polytopes().size() + polytope];
+  }
+  bool stamped(const Cell& anchor, std::size_t polytope) const {
+    const State s = state(anchor, polytope);
+    return s == State::whole || s == State::part;
+  }
+  // The atoms at a polytope's corners, no_index where there is none; returns which there are, a bit each. Stops when
+  // fewer than four can be left.
+  std::uint64_t find_corners(const PatternPolytope& polytope, const Cell& anchor, Index* corner) const;
+  const PatternCut& cut_of(Index polytope, std::uint64_t occupied) const;
+  // The state that a polytope is given, and how many tetrahedra that makes.
+  std::pair<State, std::size_t> fit(Index polytope, const Cell& anchor, double largest_radius, double tolerance) const;
+  std::vector<Triangle> outside_faces(const LatticeSite& site) const;
 
   PatchPattern pattern_;
   std::span<const Vec3> points_;
@@ -94,27 +119,8 @@ class StampedPatch {
   std::vector<State> state_;               // [brick][cell][polytope]
   std::vector<std::size_t> tetrahedra_;    // stamped in each brick
   std::size_t total_ = 0;                  // in all
+  std::unique_ptr<Cuts> cuts_ = std::make_unique<Cuts>();
 };
-
-template <class Body>
-bool StampedPatch::each_outside_face(const LatticeSite& site, Body&& body) const {
-  for (const PatternCorner& c : pattern_.around(site.basis)) {
-    const Cell anchor = site.cell + c.cell;
-    if (!stamped(anchor, c.polytope)) continue;
-    const PatternPolytope& polytope = pattern_.polytopes()[c.polytope];
-    for (const PatternFace& face : polytope.faces) {
-      if (face.corners[0] != c.corner && face.corners[1] != c.corner && face.corners[2] != c.corner) continue;
-      if (stamped(anchor + face.cell, face.neighbour)) continue;
-      Triangle triangle;
-      for (int i = 0; i < 3; ++i) {
-        const SiteOffset& s = polytope.corners[face.corners[i]];
-        triangle[i] = atom(anchor + Cell{s.cell[0], s.cell[1], s.cell[2]}, s.basis);
-      }
-      if (!body(triangle)) return false;
-    }
-  }
-  return true;
-}
 
 template <class Body>
 bool StampedPatch::each_in_ball(const Vec3& center, double radius, Body&& body) const {

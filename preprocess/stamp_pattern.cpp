@@ -35,7 +35,7 @@ double separation(const std::vector<Vec3>& corners, const Vec3& direction) {
 }  // namespace
 
 PatchPattern::PatchPattern(const LatticeTemplate& pattern, const LatticePatch& patch, const Vec3& direction)
-    : matrix_(patch.matrix), origin_(patch.origin) {
+    : matrix_(patch.matrix), origin_(patch.origin), direction_(direction) {
   if (!(std::abs(glm::determinant(matrix_)) > 0.0)) return;
   inverse_ = glm::inverse(matrix_);
   for (int k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ PatchPattern::PatchPattern(const LatticeTemplate& pattern, const LatticePatch& p
     polytope.corners = t.corners;
     std::vector<Vec3> corners;
     for (const SiteOffset& s : t.corners) corners.push_back(offset_position(s));
-    polytope.tetrahedra = cut_polytope(corners, direction);
+    polytope.whole = cut(polytope, ~std::uint64_t{0});
     if (corners.size() > 4) in_place_ = std::min(in_place_, in_place_of_separation * separation(corners, direction));
     for (std::size_t c = 0; c < t.corners.size(); ++c) {
       const auto& cell = t.corners[c].cell;
@@ -79,23 +79,50 @@ double PatchPattern::nearest_neighbour() const {
   return nearest;
 }
 
+PatternCut PatchPattern::cut(const PatternPolytope& polytope, std::uint64_t occupied) const {
+  std::vector<std::uint8_t> kept;
+  std::vector<Vec3> places;
+  for (std::size_t c = 0; c < polytope.corners.size(); ++c) {
+    if ((occupied >> c & 1) == 0) continue;
+    kept.push_back(static_cast<std::uint8_t>(c));
+    places.push_back(offset_position(polytope.corners[c]));
+  }
+  PatternCut result;
+  double fattest = 0.0;
+  std::map<std::array<std::uint8_t, 3>, std::vector<std::array<std::uint8_t, 3>>> triangles;
+  for (const auto& local : cut_polytope(places, direction_)) {
+    const std::array<std::uint8_t, 4> t{kept[local[0]], kept[local[1]], kept[local[2]], kept[local[3]]};
+    result.tetrahedra.push_back(t);
+    const double fat = fatness({places[local[0]], places[local[1]], places[local[2]], places[local[3]]});
+    if (fat > fattest * (1.0 + 1e-6)) {
+      fattest = fat;
+      result.frame = t;
+    }
+    for (const auto& f : face_corners) {
+      const std::array<std::uint8_t, 3> triangle{t[f[0]], t[f[1]], t[f[2]]};
+      auto sorted = triangle;
+      std::sort(sorted.begin(), sorted.end());
+      triangles[sorted].push_back(triangle);
+    }
+  }
+  for (const auto& [sorted, seen] : triangles) {
+    if (seen.size() == 1) result.faces.push_back(seen[0]);  // otherwise between two tetrahedra
+  }
+  return result;
+}
+
 bool PatchPattern::place_spheres() {
   for (PatternPolytope& polytope : polytopes_) {
-    double fattest = 0.0;
-    for (const auto& t : polytope.tetrahedra) {
-      std::array<Vec3, 4> p;
-      for (int i = 0; i < 4; ++i) p[i] = offset_position(polytope.corners[t[i]]);
-      const double fat = fatness(p);
-      if (!(fat > 0.0)) return false;  // turned inside out
-      if (fat <= fattest * (1.0 + 1e-6)) continue;
-      fattest = fat;
-      polytope.frame = t;
-      const Sphere sphere = circumsphere(p[0], p[1], p[2], p[3]);
-      polytope.center = sphere.center;
-      polytope.center_fraction = inverse_ * sphere.center;
-      polytope.radius = sphere.radius;
+    if (polytope.whole.tetrahedra.empty()) return false;
+    const auto corner = [&](std::size_t c) { return offset_position(polytope.corners[c]); };
+    for (const auto& t : polytope.whole.tetrahedra) {
+      if (!(fatness({corner(t[0]), corner(t[1]), corner(t[2]), corner(t[3])}) > 0.0)) return false;
     }
-    if (polytope.tetrahedra.empty()) return false;
+    const auto& f = polytope.whole.frame;
+    const Sphere sphere = circumsphere(corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3]));
+    polytope.center = sphere.center;
+    polytope.center_fraction = inverse_ * sphere.center;
+    polytope.radius = sphere.radius;
     largest_void_ = std::max(largest_void_, polytope.radius);
   }
   return true;
@@ -113,21 +140,11 @@ bool PatchPattern::join_faces() {
   std::map<Name, std::vector<Place>> places;
   for (std::size_t p = 0; p < polytopes_.size(); ++p) {
     PatternPolytope& polytope = polytopes_[p];
-    std::map<std::array<std::uint8_t, 3>, std::vector<std::array<std::uint8_t, 3>>> triangles;
-    for (const auto& t : polytope.tetrahedra) {
-      for (const auto& f : face_corners) {
-        const std::array<std::uint8_t, 3> triangle{t[f[0]], t[f[1]], t[f[2]]};
-        auto sorted = triangle;
-        std::sort(sorted.begin(), sorted.end());
-        triangles[sorted].push_back(triangle);
-      }
-    }
-    for (const auto& [sorted, seen] : triangles) {
-      if (seen.size() > 2) return false;
-      if (seen.size() == 2) continue;  // between two tetrahedra
+    polytope.neighbours.resize(polytope.whole.faces.size());
+    for (std::size_t f = 0; f < polytope.whole.faces.size(); ++f) {
       Name name;
       for (int i = 0; i < 3; ++i) {
-        const SiteOffset& s = polytope.corners[seen[0][i]];
+        const SiteOffset& s = polytope.corners[polytope.whole.faces[f][i]];
         name[i] = {s.basis, s.cell[0], s.cell[1], s.cell[2]};
       }
       std::sort(name.begin(), name.end());
@@ -135,17 +152,16 @@ bool PatchPattern::join_faces() {
       for (auto& site : name) {
         for (int k = 0; k < 3; ++k) site[k + 1] -= cell[k];
       }
-      places[name].push_back({static_cast<Index>(p), polytope.faces.size(), cell});
-      polytope.faces.push_back({seen[0], no_index, {}});
+      places[name].push_back({static_cast<Index>(p), f, cell});
     }
   }
   for (const auto& [name, pair] : places) {
     if (pair.size() != 2) return false;
     for (int side = 0; side < 2; ++side) {
       const Place &here = pair[side], &there = pair[1 - side];
-      PatternFace& face = polytopes_[here.polytope].faces[here.face];
-      face.neighbour = there.polytope;
-      for (int k = 0; k < 3; ++k) face.cell[k] = here.cell[k] - there.cell[k];
+      PatternNeighbour& neighbour = polytopes_[here.polytope].neighbours[here.face];
+      neighbour.polytope = there.polytope;
+      for (int k = 0; k < 3; ++k) neighbour.cell[k] = here.cell[k] - there.cell[k];
     }
   }
   return true;

@@ -11,20 +11,25 @@
 
 namespace atomesh {
 
-// A triangle of a polytope's outside, and the polytope behind it: number `neighbour`, anchored `cell` cells away.
-struct PatternFace {
-  std::array<std::uint8_t, 3> corners;  // counter-clockwise seen from outside
-  Index neighbour;
+// The corners of a polytope, or those of them that are occupied, cut into tetrahedra. All indices into its corners.
+struct PatternCut {
+  std::vector<std::array<std::uint8_t, 4>> tetrahedra;  // none where the corners lie in one plane
+  std::vector<std::array<std::uint8_t, 3>> faces;       // the outside, counter-clockwise seen from there
+  std::array<std::uint8_t, 4> frame{};                  // the fattest tetrahedron: its sphere is the polytope's
+};
+
+// The polytope behind a face of a whole one: number `polytope`, anchored `cell` cells away.
+struct PatternNeighbour {
+  Index polytope;
   std::array<int, 3> cell;
 };
 
 struct PatternPolytope {
   std::vector<SiteOffset> corners;  // from the anchor, the cell of corners[0]
-  std::vector<std::array<std::uint8_t, 4>> tetrahedra;
-  std::vector<PatternFace> faces;
-  std::array<std::uint8_t, 4> frame{};  // the fattest of the tetrahedra: its sphere is the polytope's
-  Vec3 center{0.0};                     // Å, from the origin of the anchor
-  Vec3 center_fraction{0.0};            // the same in cells
+  PatternCut whole;
+  std::vector<PatternNeighbour> neighbours;  // of each face of `whole`
+  Vec3 center{0.0};                          // Å, from the origin of the anchor
+  Vec3 center_fraction{0.0};                 // the same in cells
   double radius = 0.0;
   // Other sites so near the sphere that atoms in place might lie in it.
   std::vector<SiteOffset> close;
@@ -67,6 +72,8 @@ class PatchPattern {
   const std::vector<PatternPolytope>& polytopes() const { return polytopes_; }
   const std::vector<PatternCorner>& around(std::size_t basis) const { return around_[basis]; }
   double largest_void() const { return largest_void_; }
+  // The polytope without the corners whose bits are not set in `occupied`.
+  PatternCut cut(const PatternPolytope& polytope, std::uint64_t occupied) const;
 
  private:
   bool place_spheres();
@@ -82,6 +89,7 @@ class PatchPattern {
 
   Mat3 matrix_{1.0}, inverse_{1.0};
   Vec3 origin_{0.0};
+  Vec3 direction_{1.0, 0.0, 0.0};
   Vec3 cells_per_length_{0.0};
   std::vector<Vec3> fractional_;
   std::vector<PatternPolytope> polytopes_;
