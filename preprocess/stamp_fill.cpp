@@ -85,6 +85,20 @@ class Blocks {
   std::vector<std::vector<Index>> members_;
 };
 
+// A point moved by far less than the tolerance, always the same way. What shares a sphere is told from the points as
+// they are; to the triangulation ties only mean slow arithmetic, and how it would break them does not matter.
+Vec3 shaken(const StampedSample& sample, Index i) {
+  Vec3 p = sample.points()[i];
+  std::uint64_t random = i;
+  for (int k = 0; k < 3; ++k) {
+    random = (random + 0x9E3779B97F4A7C15U) * 0xBF58476D1CE4E5B9U;  // SplitMix64, nearly
+    random ^= random >> 29;
+    p[k] += 0.01 * sample.options().tolerance * sample.options().largest_radius *
+            (static_cast<double>(random >> 11) * 0x1p-52 - 1.0);
+  }
+  return p;
+}
+
 // Of the tetrahedra of a block's points, those that may be missing: of radius up to the largest, empty of all points
 // and not stamped. Slivers have no sphere to speak of; the polytopes they are scraps of are known by their other
 // pieces.
@@ -94,7 +108,7 @@ std::vector<Missing> find_missing(const StampedSample& sample, const Blocks& blo
   std::vector<Missing> missing;
   if (members.size() < 4) return missing;
   std::vector<Vec3> places;
-  for (const Index i : members) places.push_back(sample.points()[i]);
+  for (const Index i : members) places.push_back(shaken(sample, i));
   // The triangulation is told of a cancel without sharing the caller's listener among threads.
   Progress quiet([&](std::string_view, double) {
     if (progress.cancelled()) throw CancelledError();
