@@ -41,14 +41,17 @@ std::vector<Tetrahedron> stamp_delaunay(std::span<const Vec3> points, const Latt
   report = {};
   {
     const StampedSample sample(points, sites, options, progress);
+    progress.update(0.4);
     const std::vector<Index> open = sample.open_points(progress);
-    progress.check();
+    progress.update(0.5);
     if (static_cast<double>(open.size()) <= most_open * static_cast<double>(points.size())) {
       if (const auto filled = fill_open(sample, sites, open, progress)) {
+        progress.update(0.9);
         report = {sample.stamped(), open.size(), filled->size()};
         std::vector<Tetrahedron> tetrahedra(sample.stamped() + filled->size());
         sample.write(std::span(tetrahedra).first(sample.stamped()), progress);
         std::copy(filled->begin(), filled->end(), tetrahedra.begin() + static_cast<std::ptrdiff_t>(sample.stamped()));
+        progress.update(1.0);
         return tetrahedra;
       }
     }

@@ -13,7 +13,12 @@ namespace atomesh {
 struct StampOptions {
   // Å: tetrahedra with a larger circumsphere are not made. What carve() would keep of the full Delaunay mesh.
   double largest_radius = 0.0;
-  // Polytopes whose corners differ from the pattern by more than this share of their radius are not stamped.
+  // Polytopes whose corners are off their common sphere by more than this share of its radius are not stamped, and what
+  // is off by so much counts as on it where cells are filled in. Below 0.01.
+  //
+  // Up to 1e-7 the mesh is Delaunay as validate() means it. Coordinates rounded to d Å need about 2 d over the radius:
+  // then a crystal from a file is cut as the exact one is, watertight and without the slivers that Delaunay's rule,
+  // taken literally, makes of rounding; it is Delaunay but for about that share of the radius.
   double tolerance = 1e-7;
 };
 
@@ -26,14 +31,20 @@ struct StampReport {
 // All Delaunay tetrahedra of the points with a circumsphere of at most options.largest_radius, ties between equal
 // spheres cut as the pattern cuts them.
 //
-// A polytope of the pattern is stamped where every corner is occupied (relative to its other corners, so that patches
-// may be strained or displaced as long as it is less than the tolerance) and no other point lies in its sphere: then it
-// is a Delaunay cell. Every Delaunay cell not stamped has only *open* points as corners, points whose surroundings the
-// stamped cells do not fill. A Delaunay cell of all points is one of any subset that holds its corners, so the
-// triangulation of the open points holds every cell that is missing; those of its cells whose sphere holds any other
-// point are not Delaunay and are dropped. Both halves speak of the same complex, so they fit without gap or overlap.
+// A polytope of the pattern is stamped where its corners are occupied, each within a few hundredths of the nearest-
+// neighbour distance of its site and all on one sphere, and no other point lies in that sphere: then it is a Delaunay
+// cell. So is what the occupied corners span where others are empty, at a surface or beside a vacancy. Every Delaunay
+// cell not stamped has only *open* points as corners, points whose surroundings the stamped cells do not fill (which
+// they are is proved in stamp_sample.cpp). A Delaunay cell of all points is one of any subset that holds its corners,
+// so the triangulation of the open points holds every cell that is missing; those of its cells whose sphere holds any
+// other point are not Delaunay and are dropped. Both halves speak of the same complex, so they fit without gap or
+// overlap. That is checked on every triangle between them; where it does not hold, as it may when coordinates are
+// rounded by about as much as the tolerance allows, or where hardly anything can be stamped, all points are
+// triangulated as if there were no pattern (nothing stamped then).
 //
-// `points` are positions to mesh, sites.of[i] the site of point i. Positively oriented, in any order.
+// `points` are positions to mesh, all distinct and finite, sites.of[i] the site of point i. Positively oriented, in a
+// fixed order whatever the number of threads. Throws UsageError for options out of range and sites that do not belong
+// to the points.
 std::vector<Tetrahedron> stamp_delaunay(std::span<const Vec3> points, const LatticeSites& sites,
                                         const StampOptions& options, StampReport& report,
                                         Progress& progress = no_progress());

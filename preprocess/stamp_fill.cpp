@@ -88,13 +88,13 @@ class Blocks {
 // A point moved by far less than the tolerance, always the same way. What shares a sphere is told from the points as
 // they are; to the triangulation ties only mean slow arithmetic, and how it would break them does not matter.
 Vec3 shaken(const StampedSample& sample, Index i) {
+  const double amplitude = 0.01 * sample.options().tolerance * sample.options().largest_radius;
   Vec3 p = sample.points()[i];
-  std::uint64_t random = i;
   for (int k = 0; k < 3; ++k) {
-    random = (random + 0x9E3779B97F4A7C15U) * 0xBF58476D1CE4E5B9U;  // SplitMix64, nearly
-    random ^= random >> 29;
-    p[k] += 0.01 * sample.options().tolerance * sample.options().largest_radius *
-            (static_cast<double>(random >> 11) * 0x1p-52 - 1.0);
+    std::uint64_t random = (3 * std::uint64_t{i} + static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15U;
+    random = (random ^ random >> 30) * 0xBF58476D1CE4E5B9U;  // SplitMix64
+    random = (random ^ random >> 27) * 0x94D049BB133111EBU;
+    p[k] += amplitude * (static_cast<double>(random >> 11) * 0x1p-52 - 1.0);
   }
   return p;
 }
@@ -211,18 +211,24 @@ Triangle reversed(const Triangle& t) {
 // nothing missing behind them.
 std::vector<Triangle> stamped_seam(const StampedSample& sample, const LatticeSites& sites,
                                    std::span<const Index> open) {
-  std::vector<Triangle> seam;
+  std::vector<std::vector<Triangle>> parts((open.size() + items_per_range - 1) / items_per_range);
   const auto is_open = [&](Index v) { return std::binary_search(open.begin(), open.end(), v); };
-  for (const Index v : open) {
-    const StampedPatch* patch = sample.patch_of(v);
-    if (patch == nullptr) continue;
-    patch->each_outside_face(sites.of[v], [&](const Triangle& t) {
-      if (*std::min_element(t.begin(), t.end()) == v && is_open(t[0]) && is_open(t[1]) && is_open(t[2])) {
-        seam.push_back(rotated(t));
-      }
-      return true;
-    });
-  }
+  parallel_for(open.size(), items_per_range, [&](std::size_t begin, std::size_t end) {
+    std::vector<Triangle>& part = parts[begin / items_per_range];
+    for (std::size_t n = begin; n < end; ++n) {
+      const Index v = open[n];
+      const StampedPatch* patch = sample.patch_of(v);
+      if (patch == nullptr) continue;
+      patch->each_outside_face(sites.of[v], [&](const Triangle& t) {
+        if (*std::min_element(t.begin(), t.end()) == v && is_open(t[0]) && is_open(t[1]) && is_open(t[2])) {
+          part.push_back(rotated(t));
+        }
+        return true;
+      });
+    }
+  });
+  std::vector<Triangle> seam;
+  for (const auto& part : parts) seam.insert(seam.end(), part.begin(), part.end());
   std::sort(seam.begin(), seam.end());
   return seam;
 }

@@ -61,7 +61,7 @@ PatchPattern::PatchPattern(const LatticeTemplate& pattern, const LatticePatch& p
     }
     polytopes_.push_back(std::move(polytope));
   }
-  usable_ = in_place_ > 0.0 && place_spheres() && join_faces();
+  usable_ = !polytopes_.empty() && in_place_ > 0.0 && place_spheres() && join_faces();
   if (usable_) find_close_sites();
 }
 
