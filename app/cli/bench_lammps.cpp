@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <vector>
-
-#include "app/cli/bench_tools.h"
 
 namespace atomesh::cli {
 
@@ -32,8 +31,8 @@ void write_data(const std::string& path, const Atoms& atoms) {
   }
 }
 
-// Four timed runs: each compute with its list kept, then with all lists built anew in every step. Every thermo output
-// asks for the compute once.
+// Each compute with its lists kept, then with all lists built anew in every step. In each of the `calls` steps thermo
+// output asks for the compute once.
 std::string script(const std::string& data, double cutoff, int neighbours, int calls) {
   std::string text = fmt::format(
       "units metal\natom_style atomic\nboundary p p p\nread_data \"{}\"\n"
@@ -43,8 +42,8 @@ std::string script(const std::string& data, double cutoff, int neighbours, int c
       data, 1.05 * cutoff, 2.2 * cutoff, cutoff, neighbours);
   for (const char* lists : {"every 100000000 delay 0 check no", "every 1 delay 0 check no"}) {
     for (const char* column : {"c_scna", "c_scen"}) {
-      text += fmt::format("neigh_modify {}\nthermo_style custom step {}\nrun 0\nrun {} pre no post no\n", lists, column,
-                          calls);
+      text += fmt::format("neigh_modify {}\nthermo_style custom step {}\nrun 0\nrun {} pre no post yes\n", lists,
+                          column, calls);
     }
   }
   return text;
@@ -80,22 +79,30 @@ std::optional<LammpsTimes> time_lammps(const std::string& lmp, const Atoms& atom
     why = "it could not be started";
     return std::nullopt;
   }
-  // "Loop time of 0.848666 on 1 procs for 3 steps with 256000 atoms"; a run of 0 steps only sets up.
-  std::vector<double> ms;
+  // "Loop time of 0.848666 on 1 procs for 3 steps with 256000 atoms", then "99.1% CPU use with 1 MPI tasks"; a run of 0
+  // steps only sets up.
+  std::vector<Times> times;
+  bool counted = false;
   std::array<char, 4096> line{};
   while (std::fgets(line.data(), static_cast<int>(line.size()), output) != nullptr) {
-    double seconds = 0.0;
-    int steps = 0;
-    if (std::sscanf(line.data(), "Loop time of %lf on %*d procs for %d steps", &seconds, &steps) == 2 && steps > 0) {
-      ms.push_back(1e3 * seconds / steps);
-    }
     why = line.data();
+    double seconds = 0.0;
+    double percent = 0.0;
+    int steps = 0;
+    if (std::sscanf(line.data(), "Loop time of %lf on %*d procs for %d steps", &seconds, &steps) == 2) {
+      counted = steps > 0;
+      const double ms = 1e3 * seconds / std::max(steps, 1);
+      if (counted) times.push_back({ms, ms, ms, ms});
+    } else if (counted && why.find("% CPU use") != std::string::npos &&
+               std::sscanf(line.data(), "%lf", &percent) == 1) {
+      times.back().cpu = 0.01 * percent * times.back().median;
+    }
   }
   const int status = pclose(output);
   session.progress().check();
   while (!why.empty() && why.back() == '\n') why.pop_back();
-  if (status != 0 || ms.size() != 4) return std::nullopt;
-  return LammpsTimes{ms[0], ms[2], ms[1], ms[3]};
+  if (status != 0 || times.size() != 4) return std::nullopt;
+  return LammpsTimes{times[0], times[2], times[1], times[3]};
 }
 
 }  // namespace atomesh::cli

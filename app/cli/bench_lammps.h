@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "app/cli/bench_tools.h"
 #include "app/cli/session.h"
 #include "core/atoms.h"
 
@@ -13,10 +14,10 @@ namespace atomesh::cli {
 std::string find_lammps();
 
 struct LammpsTimes {
-  double cna_ms = 0.0;             // compute cna/atom, its neighbour list at hand
-  double cna_with_lists_ms = 0.0;  // the same with the neighbour lists built anew, as every new snapshot needs
-  double centro_ms = 0.0;          // compute centro/atom, its list at hand
-  double centro_with_lists_ms = 0.0;
+  Times cna;                // compute cna/atom, its neighbour list at hand
+  Times cna_with_lists;     // the same with the neighbour lists built anew, as every new snapshot needs
+  Times centro;             // compute centro/atom, its list at hand
+  Times centro_with_lists;  // the same with the lists built anew
 };
 
 // One process, one thread. `cutoff` Å of cna/atom; `neighbours` of centro/atom. The atoms need a periodic box whose

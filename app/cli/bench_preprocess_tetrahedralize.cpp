@@ -143,8 +143,11 @@ class Case {
     BenchRow row = make_row(mesher, ours, mesher == "pattern" ? threads() : 1);
     row.peer = "CGAL";
     row.max_error = deepest;
-    row.more.insert(row.more.end(),
-                    {{"peer_ms", stock_.times.median}, {"ratio", ratio}, {"valid", valid}, {"delaunay", delaunay}});
+    row.more.insert(row.more.end(), {{"peer_ms", stock_.times.median},
+                                     {"ratio", ratio},
+                                     {"cpu_ratio", stock_.times.cpu / ours.times.cpu},
+                                     {"valid", valid},
+                                     {"delaunay", delaunay}});
     std::string required;
     if (mesher == "pattern" && variant_.required && sample_.atoms.size() > smallest_required) {
       row.requirements.push_back({"pattern: times CGAL's sequential Delaunay", 20.0, true, ratio, "×"});
