@@ -61,6 +61,7 @@ const std::vector<HeavyLibrary>& heavy_libraries() {
   static const std::vector<HeavyLibrary> libraries{
       {"CGAL", std::regex("^CGAL/"), {"preprocess"}},
       {"TetGen", std::regex("^tetgen\\.h$"), {"preprocess"}},
+      {"spglib", std::regex("^spglib\\.h$"), {"preprocess"}},
       {"Embree", std::regex("^embree[0-9]/"), {"render"}},
       {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 2},  // a writer, and a peer of the bench
       {"toml++", std::regex("^toml(\\+\\+|plusplus|/|\\.)"), {"core"}},
