@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "preprocess/lattice_walk.h"
 
@@ -14,8 +15,13 @@ namespace {
 constexpr double default_tolerance = 0.3, largest_tolerance = 0.45;  // nearest-neighbour distances
 constexpr std::size_t atoms_per_range = 1 << 15;
 
+// Sites can be told without polytopes, so a cell that has too intricate ones still gives them.
 LatticeTemplate pattern_of(const UnitCell& given) {
   check_unit_cell(given);
+  try {
+    return make_lattice_template(given);
+  } catch (const Error&) {
+  }
   LatticeTemplate pattern;
   pattern.cell.primitive = reduce_lattice(given.primitive);
   const Mat3 matrix = pattern.cell.matrix();
@@ -109,22 +115,24 @@ class PatchFit {
     for (int k = 0; k < 3; ++k)
       middle_[k] = std::floor(0.5 * (static_cast<double>(patch.min[k]) + static_cast<double>(patch.max[k])));
     patch.matrix = sites.patterns[patch.pattern].cell.matrix();
-    patch.origin = Vec3(0.0);
+    const LatticeSite& first = of_[atoms[0]];
+    patch.origin = positions_[atoms[0]] -
+                   patch.matrix * (Vec3(first.cell[0], first.cell[1], first.cell[2]) + fraction_[first.basis]);
   }
 
   void run() {
-    improve(0.0, true);
-    improve(0.0, false);
-    double scale = 0.0;
-    for (int round = 0; round < 3; ++round) {
-      const Moments now = sum(scale);
-      scale = std::sqrt(now.squared / std::max(now.weight, 1.0));
-      if (scale == 0.0) break;
-      improve(scale, false);
+    improve(sum(0.0));
+    Moments now = sum(0.0);
+    for (int round = 0; round < 2 && now.squared > 0.0; ++round) {
+      const double scale = std::sqrt(now.squared / now.weight);
+      // Rounding alone: nothing left to improve.
+      if (scale < 1e-12 * extent()) break;
+      improve(sum(scale));
+      now = sum(scale);
     }
-    const Moments last = sum(0.0);
-    patch_.rms = std::sqrt(last.squared / last.weight);
-    patch_.largest = std::sqrt(last.largest);
+    now = sum(0.0);
+    patch_.rms = std::sqrt(now.squared / now.weight);
+    patch_.largest = std::sqrt(now.largest);
   }
 
  private:
@@ -159,18 +167,22 @@ class PatchFit {
     return all;
   }
 
-  void improve(double scale, bool shift_only) {
-    const Moments m = sum(scale);
+  // Å, about the size of the patch.
+  double extent() const {
+    Vec3 cells(0.0);
+    for (int k = 0; k < 3; ++k)
+      cells[k] = static_cast<double>(patch_.max[k]) - static_cast<double>(patch_.min[k]) + 1.0;
+    return glm::length(patch_.matrix * cells);
+  }
+
+  void improve(const Moments& m) {
     const Vec3 s = m.s / m.weight;
     const Vec3 r = m.r / m.weight;
-    Mat3 change(0.0);
-    if (!shift_only) {
-      Mat3 spread = m.ss - m.weight * glm::outerProduct(s, s);
-      // A patch that is flat leaves a direction open; there the cell given stands.
-      const double least = 1e-9 * (spread[0][0] + spread[1][1] + spread[2][2]) + 1e-9;
-      for (int k = 0; k < 3; ++k) spread[k][k] += least;
-      change = (m.rs - m.weight * glm::outerProduct(r, s)) * glm::inverse(spread);
-    }
+    Mat3 spread = m.ss - m.weight * glm::outerProduct(s, s);
+    // A patch that is flat leaves a direction open; there the cell given stands.
+    const double least = 1e-9 * (spread[0][0] + spread[1][1] + spread[2][2]) + 1e-9;
+    for (int k = 0; k < 3; ++k) spread[k][k] += least;
+    const Mat3 change = (m.rs - m.weight * glm::outerProduct(r, s)) * glm::inverse(spread);
     patch_.matrix += change;
     patch_.origin += r - change * (s + middle_);
   }

@@ -56,8 +56,8 @@ struct LatticeSiteOptions {
 // share a site. Where the walk meets itself with other numbers (a dislocation) the atoms stay with the numbers that
 // came first. What it does not reach (a slid layer, another grain) starts a patch of its own. Same result at any number
 // of threads.
-// Throws Error for a position that is not finite and what make_lattice_template throws; a crystal that is not known
-// gives no patches.
+// Patterns are what make_lattice_template makes of the cells, without polytopes where it refuses. Throws Error for a
+// position that is not finite and what check_unit_cell throws; a crystal that is not known gives no patches.
 LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, const LatticeSiteOptions& options,
                                   Progress& progress = no_progress());
 

@@ -19,6 +19,8 @@ constexpr double least_share = 0.5, least_seed_share = 0.6, least_share_beyond_g
 // ... and are then 0.6 tolerance² from it in the mean.
 constexpr double least_order = 0.45, least_seed_order = 0.35, least_order_beyond_gap = 0.2;
 constexpr int widest_gap = 4;  // blocks
+// Share of a seed's atoms that must be of the site's species, for interstitials may repeat the crystal too.
+constexpr double least_of_species = 0.3;
 constexpr std::size_t seeds_at_once = 24, most_failures = 480;
 constexpr std::size_t seed_atoms = 6;
 constexpr std::size_t blocks_per_range = 4;
@@ -94,6 +96,13 @@ LatticeWalk::LatticeWalk(const Atoms& atoms, const Crystal& crystal, std::span<c
     for (std::size_t n = 0; n < ok.size(); ++n) {
       ok[n] = pattern.cell.basis[n / species].species == atoms.species_table[n % species].name ? 1 : 0;
     }
+    // A file that calls its atoms by other names has no say in which sites are whose.
+    for (const std::uint16_t s : atoms.species) {
+      for (std::size_t b = 0; b < pattern.cell.basis.size() && !species_known_; ++b) {
+        species_known_ = ok[b * species + s] != 0;
+      }
+      if (species_known_) break;
+    }
   }
 }
 
@@ -139,8 +148,9 @@ bool LatticeWalk::predict(std::size_t block, std::uint16_t patch, int shell, Lat
 }
 
 // Which free atoms of the block are on sites of the frame, and the frame that fits them best.
-LatticeWalk::Outcome LatticeWalk::match(std::size_t block, const WalkPattern& pattern,
-                                        const LatticeFrame& frame) const {
+LatticeWalk::Outcome LatticeWalk::match(std::size_t block, const WalkPattern& pattern, const LatticeFrame& frame,
+                                        std::vector<Placed>* placed) const {
+  if (placed != nullptr) placed->clear();
   const Mat3 to_fraction = glm::inverse(frame.matrix);
   const double limit = pattern.tolerance * pattern.tolerance;
   const auto& ok = species_ok_[static_cast<std::size_t>(&pattern - patterns_.data())];
@@ -153,6 +163,7 @@ LatticeWalk::Outcome LatticeWalk::match(std::size_t block, const WalkPattern& pa
     ++outcome.free;
     const SiteFinder::Found found = pattern.finder.find(frame, to_fraction, atoms_.positions[atom]);
     if (!(found.squared <= limit)) continue;
+    if (placed != nullptr) placed->push_back({atom, found});
     ++outcome.matched;
     outcome.of_species += ok[found.basis * species + atoms_.species[atom]];
     squared += found.squared;
@@ -164,31 +175,20 @@ LatticeWalk::Outcome LatticeWalk::match(std::size_t block, const WalkPattern& pa
   return outcome;
 }
 
-LatticeWalk::Outcome LatticeWalk::settle(std::size_t block, const WalkPattern& pattern,
-                                         const LatticeFrame& predicted) const {
-  const Outcome first = match(block, pattern, predicted);
-  if (first.matched < least_share * first.free) return first;
-  const Outcome second = match(block, pattern, first.frame);
-  return second.matched >= first.matched ? second : first;
+LatticeWalk::Outcome LatticeWalk::settle(std::size_t block, const WalkPattern& pattern, const LatticeFrame& predicted,
+                                         std::vector<Placed>& placed) const {
+  const Outcome first = match(block, pattern, predicted, &placed);
+  // With all of them placed there is nothing to gain.
+  if (first.matched == first.free || first.matched < least_share * first.free) return first;
+  return match(block, pattern, first.frame, &placed);
 }
 
-// Writes the sites of the block's free atoms.
-void LatticeWalk::take(std::size_t block, std::uint16_t patch, const LatticeFrame& frame) {
-  const WalkPattern& pattern = patterns_[patches_[patch].pattern];
-  const Mat3 to_fraction = glm::inverse(frame.matrix);
-  const double limit = pattern.tolerance * pattern.tolerance;
-  Index free = 0;
-  for (const Index atom : blocks_.atoms(block)) {
-    if (of_[atom].patch != no_patch) continue;
-    const SiteFinder::Found found = pattern.finder.find(frame, to_fraction, atoms_.positions[atom]);
-    if (found.squared <= limit) {
-      of_[atom] = {found.cell, found.basis, patch};
-      squared_[atom] = static_cast<float>(found.squared);
-    } else {
-      ++free;
-    }
+void LatticeWalk::take(std::size_t block, std::uint16_t patch, const std::vector<Placed>& placed) {
+  for (const Placed& p : placed) {
+    of_[p.atom] = {p.found.cell, p.found.basis, patch};
+    squared_[p.atom] = static_cast<float>(p.found.squared);
   }
-  free_[block] = free;
+  free_[block] -= static_cast<Index>(placed.size());
 }
 
 void LatticeWalk::accept(std::size_t block, std::uint16_t patch, const Outcome& outcome) {
@@ -205,18 +205,19 @@ std::vector<Index> LatticeWalk::advance(std::uint16_t patch, const std::vector<I
   std::vector<std::uint8_t> fits(frontier.size(), 0);
   parallel_for(frontier.size(), blocks_per_range, [&](std::size_t begin, std::size_t end) {
     progress.check();
+    std::vector<Placed> placed;
     for (std::size_t n = begin; n < end; ++n) {
       LatticeFrame predicted;
       bool known = false;
       for (int s = 1; s <= shell && !known; ++s) known = predict(frontier[n], patch, s, predicted);
       if (!known) continue;
       Outcome& outcome = outcomes[n];
-      outcome = settle(frontier[n], pattern, predicted);
+      outcome = settle(frontier[n], pattern, predicted, placed);
       const double share = shell == 1 ? least_share : least_share_beyond_gap;
       const double order = shell == 1 ? least_order : least_order_beyond_gap;
       if (outcome.matched < std::min<double>(outcome.free, share * outcome.free + 1.0)) continue;
       if (outcome.mean_squared > order * limit) continue;
-      take(frontier[n], patch, outcome.frame);
+      take(frontier[n], patch, placed);
       // Leftovers among another patch's atoms are labelled but carry the walk no further.
       const std::size_t all = blocks_.atoms(frontier[n]).size();
       fits[n] = 4 * std::size_t{outcome.matched} >= all ? 1 : 0;
@@ -327,11 +328,13 @@ LatticeWalk::Seed LatticeWalk::find_seed(std::vector<bool>& failed, std::size_t&
       for (std::size_t n = begin; n < end; ++n) seeds[n] = try_seed(full[(2 * n + 1) * full.size() / (2 * count)]);
     });
     Seed best;
+    std::vector<Placed> placed;
     for (Seed& seed : seeds) {
       const WalkPattern& pattern = patterns_[seed.pattern];
-      seed.outcome = settle(seed.block, pattern, seed.outcome.frame);
+      seed.outcome = settle(seed.block, pattern, seed.outcome.frame, placed);
       const double order = seed.outcome.mean_squared / (pattern.tolerance * pattern.tolerance);
-      if (seed.outcome.matched < least_seed_share * seed.outcome.free + 3.0 || order > least_seed_order) {
+      const bool foreign = species_known_ && seed.outcome.of_species < least_of_species * seed.outcome.matched;
+      if (seed.outcome.matched < least_seed_share * seed.outcome.free + 3.0 || order > least_seed_order || foreign) {
         failed[seed.block] = true;
         ++failures;
       } else if (seed.score > best.score) {
@@ -357,8 +360,10 @@ std::vector<LatticeWalk::Patch> LatticeWalk::run(Progress& progress) {
     if (seed.score < 0.0) break;
     const auto patch = static_cast<std::uint16_t>(patches_.size());
     patches_.push_back({seed.pattern, 0});
-    take(seed.block, patch, seed.outcome.frame);
-    accept(seed.block, patch, seed.outcome);
+    std::vector<Placed> placed;
+    const Outcome outcome = match(seed.block, patterns_[seed.pattern], seed.outcome.frame, &placed);
+    take(seed.block, patch, placed);
+    accept(seed.block, patch, outcome);
     failed[seed.block] = true;
     std::vector<Index> around;
     for_shell(1, [&](int dx, int dy, int dz) {

@@ -54,9 +54,15 @@ class LatticeWalk {
   };
   const BlockFrame* frame_in(std::size_t block, std::uint16_t patch) const;
   bool predict(std::size_t block, std::uint16_t patch, int shell, LatticeFrame& frame) const;
-  Outcome match(std::size_t block, const WalkPattern& pattern, const LatticeFrame& frame) const;
-  Outcome settle(std::size_t block, const WalkPattern& pattern, const LatticeFrame& predicted) const;
-  void take(std::size_t block, std::uint16_t patch, const LatticeFrame& frame);
+  struct Placed {
+    Index atom;
+    SiteFinder::Found found;
+  };
+  Outcome match(std::size_t block, const WalkPattern& pattern, const LatticeFrame& frame,
+                std::vector<Placed>* placed = nullptr) const;
+  Outcome settle(std::size_t block, const WalkPattern& pattern, const LatticeFrame& predicted,
+                 std::vector<Placed>& placed) const;
+  void take(std::size_t block, std::uint16_t patch, const std::vector<Placed>& placed);
   void accept(std::size_t block, std::uint16_t patch, const Outcome& outcome);
 
   struct Seed {
@@ -91,6 +97,7 @@ class LatticeWalk {
   std::vector<Index> first_frame_;                     // of each block, into frames_
   std::vector<Index> free_;                            // of each block: atoms without a site
   std::vector<std::vector<std::uint8_t>> species_ok_;  // [pattern][basis · species + s]: s sits on basis
+  bool species_known_ = false;                         // the cells' species are among the atoms'
 };
 
 }  // namespace atomesh
