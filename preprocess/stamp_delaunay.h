@@ -16,7 +16,7 @@ struct StampOptions {
   // Polytopes whose corners are off their common sphere by more than this share of its radius are not stamped, and what
   // is off by so much counts as on it where cells are filled in. Below 0.01.
   //
-  // Up to 1e-7 the mesh is Delaunay as validate() means it. Coordinates rounded to d Å need about 2 d over the radius:
+  // Up to 1e-7 the mesh is Delaunay as validate() means it. Coordinates rounded to d Å need about 20 d over the radius:
   // then a crystal from a file is cut as the exact one is, watertight and without the slivers that Delaunay's rule,
   // taken literally, makes of rounding; it is Delaunay but for about that share of the radius.
   double tolerance = 1e-7;

@@ -19,9 +19,8 @@ namespace {
 
 constexpr std::size_t items_per_range = 512;
 
-// Points further off their common sphere than a stamped polytope's may be are still told to share it.
 PolytopeTolerance tolerance_of(const StampedSample& sample) {
-  return {sample.options().tolerance, 10.0 * sample.options().tolerance};
+  return {0.2 * sample.options().tolerance, sample.options().tolerance};
 }
 
 Tetrahedron global(const Tetrahedron& t, std::span<const Index> open) {
@@ -233,8 +232,9 @@ std::vector<Triangle> stamped_seam(const StampedSample& sample, const LatticeSit
   return seam;
 }
 
-// Whether a cell of at most the largest radius should lie behind a triangle (on the side its normal points to): some
-// point there makes a sphere with it whose centre is low enough.
+// Whether a cell of at most the largest radius should lie behind a triangle, on the side its normal points to. Of the
+// spheres through the triangle's corners, what lies on that side in a smaller one lies in a larger one too, as long as
+// the centre moves to that side: it is enough to look into the largest.
 bool misses_cell(const StampedSample& sample, const Triangle& t, std::vector<Index>& slots) {
   const auto points = sample.points();
   const double largest = sample.options().largest_radius;
@@ -243,13 +243,11 @@ bool misses_cell(const StampedSample& sample, const Triangle& t, std::vector<Ind
   const double area2 = glm::dot(normal, normal);
   const Vec3 center = a + glm::cross(glm::dot(u, u) * v - glm::dot(v, v) * u, normal) * (0.5 / area2);
   const double radius2 = glm::dot(center - a, center - a);
-  const double highest = std::sqrt(std::max(largest * largest - radius2, 0.0)) * (1.0 - 1e-6);
+  const double height = std::sqrt(std::max(largest * largest - radius2, 0.0)) * (1.0 - 1e-6);
+  const Vec3 up = normal / std::sqrt(area2);
   const double flat = 10.0 * tolerance_of(sample).sphere * largest;
-  return !sample.each_in_ball(a, 2.0 * largest, slots, [&](Index p) {
-    const Vec3 d = points[p] - center;
-    const double height = glm::dot(d, normal) / std::sqrt(area2);
-    return height <= flat || (glm::dot(d, d) - radius2) / (2.0 * height) >= highest;
-  });
+  return !sample.each_in_ball(center + height * up, std::sqrt(radius2 + height * height), slots,
+                              [&](Index p) { return glm::dot(points[p] - a, up) <= flat; });
 }
 
 // Whether filled and stamped cells meet without gap or overlap: no triangle is seen twice from one side, and behind
