@@ -52,7 +52,7 @@ void FeatureComparer::fill(Match& match, std::uint16_t kind_number, const Vec3& 
       ++match.matched;
       match.near_matched += e < near ? 1 : 0;
       match.squares += distance2(static_cast<int>(n), e);
-    } else if (!features_.kinds_of[neighbours[n].species].empty() && square(neighbours[n].d + shift) <= near2) {
+    } else if (features_.in_crystal[neighbours[n].species] && square(neighbours[n].d + shift) <= near2) {
       ++match.near_stray;
     }
   }
@@ -64,10 +64,9 @@ const Match& FeatureComparer::match_kind(std::uint16_t kind, const Vec3& shift,
   return best_;
 }
 
-// The kinds of a species, those first whose near entries most neighbours are at: at most that many can match.
-void FeatureComparer::rank(std::uint16_t species, const std::vector<Neighbour>& neighbours) {
+// The kinds, those first whose near entries most neighbours are at: at most that many can match.
+void FeatureComparer::rank(std::span<const std::uint16_t> kinds, const std::vector<Neighbour>& neighbours) {
   ranked_.clear();
-  const std::vector<std::uint16_t>& kinds = features_.kinds_of[species];
   // Trying one or two outright costs less than ranking them.
   const bool few = kinds.size() <= 2;
   for (const std::uint16_t number : kinds) ranked_.push_back({few ? neighbours.size() : 0, number});
@@ -84,15 +83,15 @@ void FeatureComparer::rank(std::uint16_t species, const std::vector<Neighbour>& 
   std::stable_sort(ranked_.begin(), ranked_.end(), [](const Ranked& a, const Ranked& b) { return a.most > b.most; });
 }
 
-const Match& FeatureComparer::match(std::uint16_t species, const std::vector<Neighbour>& neighbours) {
+const Match& FeatureComparer::match(std::span<const std::uint16_t> kinds, const std::vector<Neighbour>& neighbours) {
   best_.kind = no_kind;
-  rank(species, neighbours);
+  rank(kinds, neighbours);
   for (const Ranked& ranked : ranked_) {
     if (best_.kind != no_kind && ranked.most < best_.near_matched) break;
     Match& target = best_.kind == no_kind ? best_ : trial_;
     fill(target, ranked.kind, Vec3(0.0), neighbours, false);
     if (&target == &trial_ && better(trial_, best_)) std::swap(best_, trial_);
-    if (best_.matched == neighbours.size() && best_.squares <= features_.noise * features_.noise) break;
+    if (best_.matched == neighbours.size() && best_.squares <= features_.rounding * features_.rounding) break;
   }
   return best_;
 }
@@ -122,9 +121,12 @@ bool FeatureComparer::site_taken(std::uint16_t species, const Vec3& shift,
   return false;
 }
 
-const Match& FeatureComparer::match_shifted(std::uint16_t species, const std::vector<Neighbour>& neighbours) {
+const Match& FeatureComparer::match_shifted(std::span<const std::uint16_t> kinds,
+                                            const std::vector<Neighbour>& neighbours) {
   best_.kind = no_kind;
-  for (const std::uint16_t kind : features_.kinds_of[species]) {
+  if (kinds.empty()) return best_;
+  const std::uint16_t species = features_.kinds[kinds.front()].species;
+  for (const std::uint16_t kind : kinds) {
     fill(trial_, kind, Vec3(0.0), neighbours, false);
     if (better(trial_, best_)) std::swap(best_, trial_);
   }
@@ -133,7 +135,7 @@ const Match& FeatureComparer::match_shifted(std::uint16_t species, const std::ve
   if (best_.lost()) {
     // Every neighbour taken for every entry of the first shell proposes a shift.
     const double far2 = features_.pair_distance * features_.pair_distance;
-    for (const std::uint16_t number : features_.kinds_of[species]) {
+    for (const std::uint16_t number : kinds) {
       const SiteKind& kind = features_.kinds[number];
       if (kind.entries.empty()) continue;
       const double shell = 1.1 * kind.entries.front().length;

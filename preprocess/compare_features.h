@@ -1,6 +1,7 @@
 // One atom's neighbourhood matched with the feature vectors of its species (compareFeatures of the seed's A.3).
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -37,13 +38,13 @@ class FeatureComparer {
  public:
   explicit FeatureComparer(const FeatureSet& features) : features_(features) {}
 
-  // Matches all neighbours within features.search_radius of an atom of `species`; an atom belongs to the kind that
-  // matches best: most near neighbours, then most of all, then least squares. The result stays valid until the next
-  // call.
-  const Match& match(std::uint16_t species, const std::vector<Neighbour>& neighbours);
+  // Matches all neighbours within features.search_radius of an atom that may be of any of `kinds`; it belongs to the
+  // one that matches best: most near neighbours, then most of all, then least squares. The result stays valid until the
+  // next call.
+  const Match& match(std::span<const std::uint16_t> kinds, const std::vector<Neighbour>& neighbours);
   // For an atom that match() finds displaced or lost: takes the neighbours within search_radius + pair_distance and
   // looks for the shift that puts the atom onto its site. A shift onto a site that holds an atom already is none.
-  const Match& match_shifted(std::uint16_t species, const std::vector<Neighbour>& neighbours);
+  const Match& match_shifted(std::span<const std::uint16_t> kinds, const std::vector<Neighbour>& neighbours);
   // Matches one kind at a given shift; any species fits any entry when `any_species`.
   const Match& match_kind(std::uint16_t kind, const Vec3& shift, const std::vector<Neighbour>& neighbours,
                           bool any_species = false);
@@ -51,7 +52,7 @@ class FeatureComparer {
  private:
   void fill(Match& match, std::uint16_t kind, const Vec3& shift, const std::vector<Neighbour>& neighbours,
             bool any_species) const;
-  void rank(std::uint16_t species, const std::vector<Neighbour>& neighbours);
+  void rank(std::span<const std::uint16_t> kinds, const std::vector<Neighbour>& neighbours);
   void refine(const std::vector<Neighbour>& neighbours);
   bool site_taken(std::uint16_t species, const Vec3& shift, const std::vector<Neighbour>& neighbours) const;
 

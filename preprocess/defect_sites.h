@@ -6,8 +6,7 @@
 
 #include "core/defects.h"
 #include "core/progress.h"
-#include "preprocess/feature_vectors.h"
-#include "preprocess/neighbour_grid.h"
+#include "preprocess/sample_view.h"
 
 namespace atomesh {
 
@@ -33,13 +32,14 @@ struct Misfits {
   std::span<const Index> strays_of(const Misfit& m) const { return {strays.data() + m.first_stray, m.strays}; }
 };
 
-// The sample as the search for sites sees it.
+// What the search for sites goes by.
 struct SiteSearch {
-  const Atoms& atoms;
-  const FeatureSet& features;
-  const NeighbourGrid& grid;
-  const std::vector<std::uint8_t>& reliable;  // of each atom: most of its near neighbours are where they should be
+  const SampleView& sample;
+  // Of each atom: the grain that most of its near neighbours are in place of (its word can be relied on), or no_grain.
+  const std::vector<std::uint16_t>& standing;
   const Misfits& misfits;
+
+  bool reliable(Index slot) const { return standing[sample.grid.point(slot)] != no_grain; }
 };
 
 // Reliable atoms vote for the near entries they miss; votes for one place make a candidate. Candidates are judged by
@@ -49,10 +49,15 @@ struct SiteSearch {
 // outside of the sample, however its surface is shaped, so an atom missing from the outermost layer is no vacancy. A
 // place that an atom of another species took needs no closed void. Sorted by position (z, then y, then x). `votes`
 // is left for the caller to refine: here it counts the near atoms.
+//
+// Where there are several grains, what is missing or too much across a boundary is the boundary. Sites are listed only
+// inside a grain: all reliable atoms in the first shells around belong to it, and hardly anybody there (a sixth of
+// them) fits none of its sites. Within the first shells of a boundary only the atoms' values tell.
 std::vector<VacancySite> find_vacancies(const SiteSearch& search, Progress& progress);
 
-// Atoms of a species that the unit cell lacks, and atoms that most of the reliable atoms near them cannot place.
-// Ascending; an interstitial, a substituted atom, the second atom on one site.
+// Atoms of a species that the unit cell lacks, and atoms that most of the reliable atoms near them cannot place; with
+// several grains only where three quarters of the atoms near them are reliable and of one grain. Ascending; an
+// interstitial, a substituted atom, the second atom on one site.
 std::vector<ExtraAtom> find_extras(const SiteSearch& search, Progress& progress);
 
 // Extra atoms that took a vacant site: within the pair distance of it, of another species, nearest first, each once.

@@ -7,6 +7,7 @@
 #include "core/defects.h"
 #include "preprocess/compare_features.h"
 #include "preprocess/defect_sites.h"
+#include "preprocess/glance.h"
 
 namespace atomesh {
 
@@ -36,13 +37,19 @@ struct RangeResult {
 // Compares atoms with the perfect crystal, one after the other. One per thread.
 class Examiner {
  public:
-  Examiner(const Atoms& atoms, const FeatureSet& features, const NeighbourGrid& grid, bool search_shifts)
-      : atoms_(atoms), features_(features), grid_(grid), search_shifts_(search_shifts), comparer_(features) {}
+  // Without `search_shifts` no atom is looked for off its site, and misfits are not kept.
+  Examiner(const SampleView& sample, const GlanceTables& tables, bool search_shifts)
+      : sample_(sample), search_shifts_(search_shifts), glance_(sample, tables), comparer_(sample.features) {}
 
-  // Fills the atom's values with what is certain from its own neighbourhood; the rest goes to the misfits.
-  void examine(Index slot, Defects& defects, std::vector<std::uint8_t>& reliable, RangeResult& result);
-  // Whether most near neighbours of the atom are where the crystal has them.
-  bool fits(Index slot);
+  // Fills the atom's values with what is certain from its own neighbourhood; the rest goes to the misfits. `standing`
+  // becomes the grain (0 with one grain) that most of its near neighbours are in place of, or no_grain. An atom of
+  // no_grain is compared with every grain around it and takes the one that explains its neighbours best.
+  void examine(Index slot, Defects& defects, std::uint16_t& standing, RangeResult& result);
+  // The atom's neighbours within the search radius matched as they are; nullptr where nothing can be (a foreign atom,
+  // a crowd). neighbours() and slots() belong to it.
+  const Match* match(Index slot);
+  const std::vector<Neighbour>& neighbours() const { return neighbours_; }
+  const std::vector<Index>& slots() const { return slots_; }
 
  private:
   struct Pair {
@@ -50,16 +57,18 @@ class Examiner {
     std::uint32_t entry;
     Index neighbour;
   };
+  std::span<const std::uint16_t> kinds_for(Index slot);
   void find_neighbours(Index slot, double radius);
-  bool crowded(Index slot) const;
-  bool settled(const Match& match) const;
+  bool crowded(Index slot, std::span<const std::uint16_t> kinds) const;
   void pair_displaced(const Match& match);
+  void keep_misfit(Index slot, const Match& match, Defects& defects, RangeResult& result);
 
-  const Atoms& atoms_;
-  const FeatureSet& features_;
-  const NeighbourGrid& grid_;
+  const SampleView& sample_;
   bool search_shifts_;
+  Glance glance_;
   FeatureComparer comparer_;
+  std::vector<std::uint16_t> grains_;
+  std::vector<std::uint16_t> kinds_;
   std::vector<Index> slots_;
   std::vector<Neighbour> neighbours_;
   std::vector<Pair> pairs_;

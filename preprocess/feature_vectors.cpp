@@ -19,6 +19,8 @@ constexpr double pair_fraction = 0.6;
 constexpr double rounding = 0.005;  // Å
 constexpr double noise_fraction = 0.002;
 constexpr double same_shell = 0.05;  // of the nearest distance
+// Neighbours shake against each other with √2 amplitudes; hardly any pair of an atom's is 4.5 times that apart.
+constexpr double glance_amplitudes = 6.4;
 constexpr double enclosed_share = 0.65;
 constexpr std::size_t most_entries = 20000;
 
@@ -30,6 +32,7 @@ struct CellSites {
 };
 
 CellSites cell_sites(const UnitCell& cell, const std::vector<Species>& table, FeatureSet& set) {
+  if (cell.basis.size() > 65534) throw Error("unit cell: more than 65,534 basis atoms");
   CellSites sites{cell, {}, {}, {}};
   const Mat3 to_fraction = glm::inverse(cell.matrix());
   for (int k = 0; k < 3; ++k) {
@@ -211,69 +214,51 @@ int EntryLookup::find(const std::vector<FeatureEntry>& entries, const Vec3& q) c
   return -1;
 }
 
-FeatureSet build_feature_vectors(const UnitCell& cell, const std::vector<Species>& table, double neighbourhood,
-                                 double tolerance) {
-  check_unit_cell(cell);
-  if (!(neighbourhood > 0.0) || !std::isfinite(neighbourhood)) {
-    throw UsageError("neighbourhood: expected a factor above 0, got " + std::to_string(neighbourhood));
-  }
-  if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
-    throw UsageError("tolerance: expected a length in Å, 0 for automatic, got " + std::to_string(tolerance));
-  }
-  FeatureSet set;
-  const CellSites sites = cell_sites(cell, table, set);
-  const std::size_t basis = sites.position.size();
-  if (basis > 65534) throw Error("unit cell: more than 65,534 basis atoms");
+namespace {
 
-  const auto shortest = reduce_lattice(cell.primitive);
-  set.nearest = std::min({glm::length(shortest[0]), glm::length(shortest[1]), glm::length(shortest[2])});
+// Nearest-neighbour distance of the crystal.
+double nearest_distance(const CellSites& sites) {
+  const auto shortest = reduce_lattice(sites.cell.primitive);
+  double nearest = std::min({glm::length(shortest[0]), glm::length(shortest[1]), glm::length(shortest[2])});
+  const std::size_t basis = sites.position.size();
   for (std::size_t i = 0; i < basis && basis > 1; ++i) {
     // Seen from each basis atom, somebody is within the distance found so far or it stands.
-    const auto near = surroundings(sites, i, set.nearest);
-    if (!near.empty()) set.nearest = std::min(set.nearest, near.front().length);
+    const auto near = surroundings(sites, i, nearest);
+    if (!near.empty()) nearest = std::min(nearest, near.front().length);
   }
-  set.radius = neighbourhood * cell.longest_primitive();
-  set.noise = std::max(noise_fraction * set.nearest, std::min(rounding, 0.02 * set.nearest));
-  set.tolerance = tolerance > 0.0 ? tolerance : default_tolerance * set.nearest;
-  if (set.tolerance > largest_tolerance * set.nearest) {
-    set.tolerance = largest_tolerance * set.nearest;
-    set.tolerance_limited = true;
-  }
-  set.pair_distance = pair_fraction * set.nearest;
+  return nearest;
+}
 
-  const double slack = 0.5 * same_shell * set.nearest;
-  for (std::size_t i = 0; i < basis; ++i) {
+// Radius of the first shells around the basis atom that needs most.
+double near_shells(const CellSites& sites, double nearest) {
+  double near_radius = 0.0;
+  for (std::size_t i = 0; i < sites.position.size(); ++i) {
     double shells = 0.0;
-    double radius = 2.0 * set.nearest;
-    for (; shells == 0.0 && radius < 5.0 * set.nearest; radius *= 1.2) {
-      shells = first_shells(surroundings(sites, i, radius), radius, set.nearest);
+    double radius = 2.0 * nearest;
+    for (; shells == 0.0 && radius < 5.0 * nearest; radius *= 1.2) {
+      shells = first_shells(surroundings(sites, i, radius), radius, nearest);
     }
-    if (shells == 0.0) shells = radius;
-    set.near_radius = std::max(set.near_radius, shells + slack);
+    near_radius = std::max(near_radius, shells > 0.0 ? shells : radius);
   }
-  // Shells exactly at the radius belong to it whatever the rounding.
-  set.radius += slack;
-  const double farthest = set.farthest_counted();
-  set.search_radius = farthest + set.tolerance;
-  set.glance_radius = farthest + std::min(slack, set.tolerance);
+  return near_radius;
+}
 
-  // Vectors reach further than what counts, so that nothing near their ends is missing or extra by accident: an atom
-  // that strayed out of the neighbourhood or into it still finds its entry.
-  std::vector<std::uint16_t> kind_of_basis(basis);
-  for (std::size_t i = 0; i < basis; ++i) {
-    const double end = farthest + set.pair_distance;
-    SiteKind kind{sites.species[i], surroundings(sites, i, end), 0, 0, 0, 0.0, {}};
+// Adds the kinds of one grain, their entries reaching to `end`.
+void add_kinds(const CellSites& sites, std::uint16_t grain, double end, FeatureSet& set) {
+  const std::size_t first = set.kinds.size();
+  std::vector<std::uint16_t> kind_of_basis;
+  for (std::size_t i = 0; i < sites.position.size(); ++i) {
+    SiteKind kind{sites.species[i], grain, surroundings(sites, i, end), 0, 0, 0, 0.0, {}};
     const auto same = [&](const SiteKind& known) {
       return known.species == kind.species && same_surroundings(known.entries, kind.entries, end, 2.0 * set.noise);
     };
-    const auto found = std::find_if(set.kinds.begin(), set.kinds.end(), same);
-    const auto k = static_cast<std::size_t>(found - set.kinds.begin());
-    kind_of_basis[i] = static_cast<std::uint16_t>(k);
-    if (k == set.kinds.size()) set.kinds.push_back(std::move(kind));
+    const auto found = std::find_if(set.kinds.begin() + static_cast<std::ptrdiff_t>(first), set.kinds.end(), same);
+    kind_of_basis.push_back(static_cast<std::uint16_t>(found - set.kinds.begin()));
+    if (found == set.kinds.end()) set.kinds.push_back(std::move(kind));
+    if (set.kinds.size() > 65534) throw Error("unit cell: more than 65,534 kinds of sites");
   }
   const std::vector<Vec3> directions = even_directions();
-  set.kinds_of.resize(table.size() + set.absent_species.size());
-  for (std::size_t k = 0; k < set.kinds.size(); ++k) {
+  for (std::size_t k = first; k < set.kinds.size(); ++k) {
     SiteKind& kind = set.kinds[k];
     for (FeatureEntry& entry : kind.entries) {
       entry.kind = kind_of_basis[entry.kind];
@@ -282,11 +267,70 @@ FeatureSet build_feature_vectors(const UnitCell& cell, const std::vector<Species
     }
     kind.enclosed = std::max(static_cast<std::size_t>(std::ceil(enclosed_share * static_cast<double>(kind.near))),
                              half_space_count(kind, directions) + 1);
-    kind.link = link_length(kind, directions) + slack;
+    kind.link = link_length(kind, directions) + 0.5 * same_shell * set.nearest;
     kind.lookup = EntryLookup(kind.entries, set.tolerance, 0.2 * set.nearest);
-    set.kinds_of[kind.species].push_back(static_cast<std::uint16_t>(k));
+    set.kinds_of[grain * set.in_crystal.size() + kind.species].push_back(static_cast<std::uint16_t>(k));
+    set.in_crystal[kind.species] = 1;
   }
+}
+
+}  // namespace
+
+FeatureSet build_feature_vectors(std::span<const UnitCell> cells, const std::vector<Species>& table,
+                                 double neighbourhood, double tolerance, const NoiseLevel& noise) {
+  if (!(neighbourhood > 0.0) || !std::isfinite(neighbourhood)) {
+    throw UsageError("neighbourhood: expected a factor above 0, got " + std::to_string(neighbourhood));
+  }
+  if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
+    throw UsageError("tolerance: expected a length in Å, 0 for automatic, got " + std::to_string(tolerance));
+  }
+  FeatureSet set;
+  std::vector<CellSites> grains;
+  for (const UnitCell& cell : cells) {
+    check_unit_cell(cell);
+    grains.push_back(cell_sites(cell, table, set));
+    const double nearest = nearest_distance(grains.back());
+    set.nearest = grains.size() == 1 ? nearest : std::min(set.nearest, nearest);
+    set.radius = std::max(set.radius, neighbourhood * cell.longest_primitive());
+  }
+  const double floor = std::max(noise_fraction * set.nearest, std::min(rounding, 0.02 * set.nearest));
+  set.noise = set.rounding = floor;
+  set.tolerance = tolerance;
+  if (tolerance == 0.0) {
+    set.tolerance =
+        std::clamp(noise.factor * noise.amplitude, default_tolerance * set.nearest, largest_tolerance * set.nearest);
+  } else if (tolerance > largest_tolerance * set.nearest) {
+    set.tolerance = largest_tolerance * set.nearest;
+    set.tolerance_limited = true;
+  }
+  set.pair_distance = pair_fraction * set.nearest;
+
+  const double slack = 0.5 * same_shell * set.nearest;
+  for (const CellSites& sites : grains) {
+    set.near_radius = std::max(set.near_radius, near_shells(sites, set.nearest) + slack);
+  }
+  // Shells exactly at the radius belong to it whatever the rounding.
+  set.radius += slack;
+  const double farthest = set.farthest_counted();
+  set.search_radius = farthest + set.tolerance;
+  set.margin = std::min(std::max(slack, glance_amplitudes * noise.amplitude), set.tolerance);
+  set.glance_radius = farthest + set.margin;
+
+  const std::size_t species = table.size() + set.absent_species.size();
+  set.in_crystal.assign(species, 0);
+  set.kinds_of.resize(species * grains.size());
+  // Vectors reach further than what counts, so that nothing near their ends is missing or extra by accident: an atom
+  // that strayed out of the neighbourhood or into it still finds its entry.
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    add_kinds(grains[g], static_cast<std::uint16_t>(g), farthest + set.pair_distance, set);
+  }
+  set.noise = std::max(floor, noise.factor * noise.amplitude);
   return set;
+}
+
+FeatureSet build_feature_vectors(const UnitCell& cell, const std::vector<Species>& table, double neighbourhood,
+                                 double tolerance) {
+  return build_feature_vectors(std::span(&cell, 1), table, neighbourhood, tolerance);
 }
 
 }  // namespace atomesh
