@@ -322,5 +322,37 @@ TEST(PlantedDefect, NeighbourhoodFactorWidensWhatADefectTouches) {
   EXPECT_EQ(quantify(atoms, fcc.cell, {2.0, 0.0}).report.vacancy_atoms, 140u);
 }
 
+// Whatever cell describes the crystal, the same atoms have the same values.
+TEST(PlantedDefect, SkewAndUnequalCellsSeeTheSame) {
+  for (const Lattice& crystal : lattices()) {
+    const Setting plain{crystal.name, periodic_crystal(crystal, wanted_edge), crystal.cell, 0.0};
+    const Index hole = nearest_atom(plain.atoms, middle(plain.atoms));
+    const std::pair<Vec3, std::string> truth(plain.atoms.positions[hole], plain.atoms.species_name(hole));
+    const Atoms atoms = without_atoms(plain.atoms, {hole});
+    const double radius = crystal.cell.longest_primitive();
+    const Quantified reference = quantify(atoms, crystal.cell);
+    UnitCell skew = crystal.cell;
+    skew.primitive[2] += 4.0 * skew.primitive[0] - 3.0 * skew.primitive[1];
+    skew.primitive[1] += 3.0 * skew.primitive[0];
+    // Twelve cells in a row as one.
+    UnitCell row = crystal.cell;
+    for (int n = 1; n < 12; ++n) {
+      for (const BasisAtom& atom : crystal.cell.basis) {
+        row.basis.push_back({atom.species, atom.position + static_cast<double>(n) * crystal.cell.primitive[0]});
+      }
+    }
+    row.primitive[0] *= 12.0;
+    for (const UnitCell& cell : {skew, row}) {
+      DefectOptions options;
+      options.neighbourhood = radius / cell.longest_primitive();
+      const Quantified q = quantify(atoms, cell, options);
+      expect_vacancies(q, atoms, {truth}, exact, crystal.name);
+      expect_extras(q, {}, crystal.name);
+      EXPECT_EQ(q.defects.vacancy, reference.defects.vacancy) << crystal.name;
+      EXPECT_EQ(q.report.positional_atoms, 0u) << crystal.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace atomesh::test
