@@ -34,23 +34,26 @@ std::uint64_t memory_to_read(std::uint64_t atoms, std::uint64_t columns, bool so
 }
 
 std::uint64_t memory_to_mesh(std::string_view mesher, std::uint64_t points) {
-  const double bytes_per_tetrahedron = mesher == "tetgen" ? 220.0 : 125.0;
+  // Measured: CGAL 108 to 113, TetGen 145.
+  const double bytes_per_tetrahedron = mesher == "tetgen" ? 165.0 : 125.0;
   return scaled(bytes_per_tetrahedron * tetrahedra_per_point, points);
 }
 
 std::uint64_t memory_to_carve(std::uint64_t vertices, std::uint64_t tetrahedra) {
-  return scaled(8.0, tetrahedra) + 17 * vertices;
+  return scaled(8.0, tetrahedra) + 17 * vertices;  // circumradii; two lengths and a flag
 }
 
 std::uint64_t memory_to_extract_surface(std::uint64_t vertices, std::uint64_t tetrahedra) {
-  return scaled(9.0, tetrahedra) + 8 * vertices;
+  return scaled(9.0, tetrahedra) + 8 * vertices;  // SharedFaces and a byte of marks
 }
 
 std::uint64_t memory_to_quantify_defects(std::uint64_t atoms) {
-  return scaled(200.0, atoms);
+  return scaled(200.0, atoms);  // measured: 124 in rock salt, 150 in strained copper
 }
 
 void require_memory_for(std::string_view stage, std::uint64_t count, std::string_view noun, std::uint64_t bytes) {
+  // Asking the system takes longer than the small pieces of work that may come by the thousand.
+  if (bytes <= 2 * allowance) return;
   require_memory(std::string(stage) + " of " + grouped(count) + " " + std::string(noun), bytes, memory_advice());
 }
 

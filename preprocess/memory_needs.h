@@ -24,6 +24,7 @@ std::uint64_t memory_to_extract_surface(std::uint64_t vertices, std::uint64_t te
 std::uint64_t memory_to_quantify_defects(std::uint64_t atoms);
 
 // Throws UnavailableError when `bytes` are more than can be had: "tetrahedralize of 10,000,000 atoms needs about …".
+// What is below 64 MB is not asked for.
 void require_memory_for(std::string_view stage, std::uint64_t count, std::string_view noun, std::uint64_t bytes);
 
 // What a person can do about too little memory, as the end of a sentence.

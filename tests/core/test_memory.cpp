@@ -36,7 +36,9 @@ TEST(Memory, PeaksRiseWithWhatIsTakenAndCanBeForgotten) {
   reset_peak_memory();
   const std::uint64_t whole = peak_memory();
   EXPECT_GE(whole, before + bytes / 2) << "the peak since the start is kept";
+#if !defined(__SANITIZE_ADDRESS__)  // whose allocator keeps what is freed
   EXPECT_LT(recent_peak_memory(), whole) << "the recent one is forgotten";
+#endif
 }
 
 TEST(Memory, ThereIsRoomForALittleAndNotForEverything) {
