@@ -18,6 +18,32 @@ Index corner_at(const Tetrahedron& tet, Index v) {
 
 }  // namespace
 
+void PlaceTable::clear() {
+  constexpr std::size_t usual = 128;  // twice the tetrahedra of nearly every star
+  if (slots_.size() < usual) slots_.resize(usual);
+  mask_ = usual - 1;
+  count_ = 0;
+  std::fill_n(slots_.begin(), usual, empty);
+}
+
+Index PlaceTable::place(Index key, bool& is_new) {
+  std::size_t slot = slot_of(key);
+  is_new = slots_[slot] == empty;
+  if (!is_new) return static_cast<Index>(slots_[slot]);
+  slots_[slot] = std::uint64_t{key} << 32U | count_++;
+  if (2 * std::size_t{count_} > mask_) grow();
+  return count_ - 1;
+}
+
+void PlaceTable::grow() {
+  const std::vector<std::uint64_t> old(slots_.begin(), slots_.begin() + static_cast<std::ptrdiff_t>(mask_ + 1));
+  mask_ = 4 * mask_ + 3;
+  slots_.assign(std::max(slots_.size(), mask_ + 1), empty);
+  for (const std::uint64_t entry : old) {
+    if (entry != empty) slots_[slot_of(static_cast<Index>(entry >> 32U))] = entry;
+  }
+}
+
 StarMesh::StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>& vertices)
     : vertices_(vertices), living_(tetrahedra.size()) {
   if (tetrahedra.size() >= most_tetrahedra) throw Error("a mesh of 2^30 tetrahedra or more cannot be simplified");
@@ -29,8 +55,6 @@ StarMesh::StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>&
   behind_.assign(4 * tetrahedra_.size(), no_index);
   corner_of_.assign(vertices.size(), no_index);
   surface_.assign(vertices.size(), 0);
-  place_of_tetrahedron_.resize(tetrahedra_.size());
-  place_of_vertex_.resize(vertices.size());
   for (Index t = 0; t < neighbours.size(); ++t) {
     remember_corners(t);
     for (Index f = 0; f < 4; ++f) {
@@ -72,30 +96,25 @@ void StarMesh::gather(Index v, Star& star) {
   star.corners.clear();
   star.link.clear();
   star.triangles.clear();
+  star_tetrahedra_.clear();
+  star_vertices_.clear();
   const auto add = [&](Corner corner) {
-    place_of_tetrahedron_[corner / 4] = static_cast<Index>(star.corners.size());
-    star.corners.push_back(corner);
-  };
-  const auto gathered = [&](Index t) {
-    const Index place = place_of_tetrahedron_[t];
-    return place < star.corners.size() && star.corners[place] / 4 == t;
+    bool is_new = false;
+    star_tetrahedra_.place(corner / 4, is_new);
+    if (is_new) star.corners.push_back(corner);
   };
   add(corner_of_[v]);
   for (std::size_t i = 0; i < star.corners.size(); ++i) {
     const Corner corner = star.corners[i];
     const Index t = corner / 4;
-    const Tetrahedron& tet = tetrahedra_[t];
     Triangle triangle{};
     for (int k = 0; k < 3; ++k) {
       const auto f = static_cast<Index>(face_corners[corner % 4][k]);
-      const Index w = tet[f];
-      if (place_of_vertex_[w] >= star.link.size() || star.link[place_of_vertex_[w]] != w) {
-        place_of_vertex_[w] = static_cast<Index>(star.link.size());
-        star.link.push_back(w);
-      }
-      triangle[k] = place_of_vertex_[w];
+      const Index w = tetrahedra_[t][f];
+      bool is_new = false;
+      triangle[k] = star_vertices_.place(w, is_new);
+      if (is_new) star.link.push_back(w);
       const Index other = behind_[4 * t + f] / 4;
-      if (gathered(other)) continue;
       add(4 * other + corner_at(tetrahedra_[other], v));
     }
     star.triangles.push_back(triangle);
@@ -165,7 +184,6 @@ bool StarMesh::refill(std::span<const Index> cells, std::span<const Corner> face
       vacant_.push_back(static_cast<Index>(tetrahedra_.size()));
       tetrahedra_.emplace_back();
       behind_.resize(behind_.size() + 4, no_index);
-      place_of_tetrahedron_.push_back(0);
     }
     slots_.push_back(vacant_.back());
     vacant_.pop_back();

@@ -11,6 +11,28 @@ namespace atomesh {
 // A tetrahedron and one of its vertices: 4 × tetrahedron + corner. The same number names the face opposite.
 using Corner = Index;
 
+// Numbers given to the keys of a small set in the order they came, found again through a table that fits the
+// processor's nearest cache for all but the largest stars.
+class PlaceTable {
+ public:
+  void clear();
+  // The number of the key; a new key gets the next one.
+  Index place(Index key, bool& is_new);
+
+ private:
+  static constexpr std::uint64_t empty = ~std::uint64_t{0};
+  void grow();
+  std::size_t slot_of(Index key) const {
+    std::size_t slot = (key * 0x9E3779B1U) & mask_;
+    while (slots_[slot] != empty && slots_[slot] >> 32U != key) slot = (slot + 1) & mask_;
+    return slot;
+  }
+
+  std::vector<std::uint64_t> slots_;  // key << 32 | number
+  std::size_t mask_ = 0;
+  Index count_ = 0;
+};
+
 // All around a vertex inside the mesh. The link is a closed polyhedron that the vertex sees from within.
 struct Star {
   Index vertex = no_index;
@@ -66,9 +88,7 @@ class StarMesh {
   std::vector<std::uint8_t> surface_;    // 1 for the vertices of the surface
   std::vector<Index> vacant_;            // tetrahedra that refill() may write over
   std::size_t living_ = 0;
-  // Places in the Star being gathered; an entry counts when the star has the tetrahedron or vertex there.
-  std::vector<Index> place_of_tetrahedron_;
-  std::vector<Index> place_of_vertex_;
+  PlaceTable star_tetrahedra_, star_vertices_;  // of the star being gathered
   struct OpenFace {
     Triangle vertices;  // sorted
     Corner face;
