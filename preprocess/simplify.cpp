@@ -34,13 +34,15 @@ struct Frozen {
   std::vector<Triangle> border;  // of the tetrahedra without a defective vertex, outward
 };
 
-Frozen find_frozen(const StarMesh& stars, std::span<const DefectValues> defects, SimplifyReport& report) {
+Frozen find_frozen(const StarMesh& stars, std::span<const DefectValues> defects, SimplifyReport& report,
+                   Progress& progress) {
   Frozen frozen;
   std::vector<std::uint8_t> touched(defects.size(), 0);  // by a tetrahedron with a defective vertex
   const auto defective = [&](const Tetrahedron& tet) {
     return std::any_of(tet.begin(), tet.end(), [&](Index v) { return defects[v].any(); });
   };
   for (std::size_t t = 0; t < stars.tetrahedra(); ++t) {
+    if (t % 4096 == 0) progress.check();
     const Tetrahedron& tet = stars.tetrahedron(static_cast<Corner>(4 * t));
     const bool changes = !defective(tet);
     if (!changes) {
@@ -121,13 +123,13 @@ void simplify(TetMesh& mesh, Surface& surface, const Atoms& atoms, const Defects
   report = {};
   report.strategy = options.strategy;
   report.tetrahedra_before = mesh.tetrahedra.size();
-  report.volume_before = volume(mesh);
+  report.volume_before = volume(mesh, progress);
   const std::vector<DefectValues> values = vertex_defects(mesh, atoms, defects);
 
   const std::vector<Tetrahedron> at_defects = defect_tetrahedra(mesh.tetrahedra, values);
 
-  StarMesh stars(std::move(mesh.tetrahedra), mesh.vertices);
-  const Frozen frozen = find_frozen(stars, values, report);
+  StarMesh stars(std::move(mesh.tetrahedra), mesh.vertices, progress);
+  const Frozen frozen = find_frozen(stars, values, report, progress);
   report.least_tetrahedra = least_tetrahedra(at_defects.size(), frozen.border, mesh.vertices);
   std::vector<std::uint8_t> left = frozen.free;
   std::vector<std::uint8_t> defective(values.size());
@@ -164,7 +166,7 @@ void simplify(TetMesh& mesh, Surface& surface, const Atoms& atoms, const Defects
   std::sort(at_defects_after.begin(), at_defects_after.end());
   report.defect_tetrahedra_identical = at_defects_after == at_defects;
 
-  Surface boundary = extract_surface(mesh);
+  Surface boundary = extract_surface(mesh, progress);
   std::vector<Triangle> triangles = boundary.triangles;
   for (Triangle& triangle : triangles) triangle = renamed(triangle, old_index);
   report.surface_identical = sorted_triangles(std::move(triangles)) == frozen.surface;
@@ -172,7 +174,7 @@ void simplify(TetMesh& mesh, Surface& surface, const Atoms& atoms, const Defects
 
   report.tetrahedra_after = mesh.tetrahedra.size();
   report.vertices_after = count_used(mesh);
-  report.volume_after = volume(mesh);
+  report.volume_after = volume(mesh, progress);
   if (report.volume_before > 0.0) {
     report.volume_change = std::abs(report.volume_after - report.volume_before) / report.volume_before;
   }

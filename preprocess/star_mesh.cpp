@@ -44,18 +44,19 @@ void PlaceTable::grow() {
   }
 }
 
-StarMesh::StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>& vertices)
+StarMesh::StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>& vertices, Progress& progress)
     : vertices_(vertices), living_(tetrahedra.size()) {
   if (tetrahedra.size() >= most_tetrahedra) throw Error("a mesh of 2^30 tetrahedra or more cannot be simplified");
   TetMesh mesh;  // for face_neighbours(), which wants the number of vertices alone
   mesh.tetrahedra = std::move(tetrahedra);
   mesh.vertices.resize(vertices.size());
-  const std::vector<std::array<Index, 4>> neighbours = face_neighbours(mesh);
+  const std::vector<std::array<Index, 4>> neighbours = face_neighbours(mesh, progress);
   tetrahedra_ = std::move(mesh.tetrahedra);
   behind_.assign(4 * tetrahedra_.size(), no_index);
   corner_of_.assign(vertices.size(), no_index);
   surface_.assign(vertices.size(), 0);
   for (Index t = 0; t < neighbours.size(); ++t) {
+    if (t % 4096 == 0) progress.check();
     remember_corners(t);
     for (Index f = 0; f < 4; ++f) {
       const Index other = neighbours[t][f];
@@ -150,9 +151,11 @@ bool StarMesh::refill(std::span<const Index> cells, std::span<const Corner> face
   const auto hole = static_cast<Corner>(4 * fill.size());
   open_.clear();
   const auto open = [&](const Tetrahedron& tet, Index f, Corner face) {
-    Triangle vertices{tet[face_corners[f][0]], tet[face_corners[f][1]], tet[face_corners[f][2]]};
-    std::sort(vertices.begin(), vertices.end());
-    open_.push_back({vertices, face});
+    Index a = tet[face_corners[f][0]], b = tet[face_corners[f][1]], c = tet[face_corners[f][2]];
+    if (a > b) std::swap(a, b);
+    if (b > c) std::swap(b, c);
+    if (a > b) std::swap(a, b);
+    open_.push_back({std::uint64_t{a} << 32U | b, c, face});
   };
   for (std::size_t t = 0; t < fill.size(); ++t) {
     for (Index f = 0; f < 4; ++f) open(fill[t], f, static_cast<Corner>(4 * t + f));
@@ -161,12 +164,17 @@ bool StarMesh::refill(std::span<const Index> cells, std::span<const Corner> face
     open(tetrahedra_[faces[i] / 4], faces[i] % 4, hole + static_cast<Corner>(i));
   }
   std::sort(open_.begin(), open_.end(), [](const OpenFace& a, const OpenFace& b) {
-    return a.vertices != b.vertices ? a.vertices < b.vertices : a.face < b.face;
+    return a.smaller != b.smaller   ? a.smaller < b.smaller
+           : a.largest != b.largest ? a.largest < b.largest
+                                    : a.face < b.face;
   });
+  const auto same = [](const OpenFace& a, const OpenFace& b) {
+    return a.smaller == b.smaller && a.largest == b.largest;
+  };
   if (open_.size() % 2 != 0) return false;
   for (std::size_t i = 0; i < open_.size(); i += 2) {
-    const bool pair = open_[i].vertices == open_[i + 1].vertices && open_[i].face < hole &&
-                      (i + 2 == open_.size() || open_[i + 2].vertices != open_[i].vertices);
+    const bool pair = same(open_[i], open_[i + 1]) && open_[i].face < hole &&
+                      (i + 2 == open_.size() || !same(open_[i + 2], open_[i]));
     if (!pair) return false;
   }
 

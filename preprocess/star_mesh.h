@@ -44,7 +44,7 @@ struct Star {
 class StarMesh {
  public:
   // Takes the tetrahedra over. Throws Error when a face belongs to more than two of them, or past 2^30 tetrahedra.
-  StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>& vertices);
+  StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>& vertices, Progress& progress = no_progress());
 
   std::size_t tetrahedra() const { return living_; }
   const Vec3& position(Index v) const { return vertices_[v]; }
@@ -90,7 +90,8 @@ class StarMesh {
   std::size_t living_ = 0;
   PlaceTable star_tetrahedra_, star_vertices_;  // of the star being gathered
   struct OpenFace {
-    Triangle vertices;  // sorted
+    std::uint64_t smaller;  // its first two vertices, in ascending order
+    Index largest;
     Corner face;
   };
   std::vector<OpenFace> open_;   // of a refill
