@@ -19,6 +19,15 @@ double squared(const Vec3& v) {
   return glm::dot(v, v);
 }
 
+// Of a triangle of link vertices, whichever way round: of two with one name, one is seen from each side.
+std::uint64_t name_of(const Triangle& triangle) {
+  auto [a, b, c] = triangle;
+  if (a > b) std::swap(a, b);
+  if (b > c) std::swap(b, c);
+  if (a > b) std::swap(a, b);
+  return std::uint64_t{a} << 42U | std::uint64_t{b} << 21U | c;
+}
+
 }  // namespace
 
 // Sign of the volume, 0 for what is thinner than a sliver.
@@ -99,34 +108,44 @@ bool DelaunayHole::fill(const StarMesh& mesh, const Star& star, SphereTies ties)
   // Gift wrapping: a tetrahedron behind each open triangle, until none is open.
   fill_.clear();
   front_ = star.triangles;
+  front_name_.clear();
+  for (const Triangle& triangle : front_) front_name_.push_back(name_of(triangle));
   while (!front_.empty()) {
-    const Triangle open = front_.back();
+    const auto [a, b, c] = front_.back();
     front_.pop_back();
-    const auto& [a, b, c] = open;
-    const Index apex = apex_behind(open, ties);
+    front_name_.pop_back();
+    const Index apex = apex_behind({a, b, c}, ties);
     if (apex == no_index || fill_.size() > 4 * star.triangles.size()) return false;
     fill_.push_back({a, c, b, apex});
     // The other three faces: what was open there from the other side is closed, else they are open from this side.
     for (const Triangle& face : {Triangle{a, b, apex}, Triangle{b, c, apex}, Triangle{c, a, apex}}) {
-      const auto& [p, q, r] = face;
-      const auto same = [&](const Triangle& other) {  // outward and with these corners
-        return (other[0] == q && other[1] == p && other[2] == r) || (other[1] == q && other[2] == p && other[0] == r) ||
-               (other[2] == q && other[0] == p && other[1] == r);
-      };
-      const auto found = std::find_if(front_.begin(), front_.end(), same);
-      if (found == front_.end()) {
+      const std::uint64_t name = name_of(face);
+      const auto found = std::find(front_name_.begin(), front_name_.end(), name);
+      if (found == front_name_.end()) {
         front_.push_back(face);
+        front_name_.push_back(name);
       } else {
-        *found = front_.back();
+        front_[static_cast<std::size_t>(found - front_name_.begin())] = front_.back();
+        *found = front_name_.back();
         front_.pop_back();
+        front_name_.pop_back();
       }
     }
   }
-  if (!spheres_are_empty()) return false;
+  if (!fills_the_star() || !spheres_are_empty()) return false;
   for (Tetrahedron& tet : fill_) {
     for (Index& v : tet) v = star.link[v];
   }
   return true;
+}
+
+// Positive tetrahedra that end at the star's triangles fill it once when they have its volume.
+bool DelaunayHole::fills_the_star() const {
+  double hole = 0.0;
+  for (const auto& [a, b, c] : star_->triangles) hole += glm::dot(glm::cross(points_[a], points_[b]), points_[c]);
+  double filled = 0.0;
+  for (const auto& [a, b, c, d] : fill_) filled += 6.0 * signed_volume(points_[a], points_[b], points_[c], points_[d]);
+  return std::abs(filled - hole) <= 1e-9 * hole;
 }
 
 bool DelaunayHole::spheres_are_empty() const {

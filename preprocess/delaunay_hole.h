@@ -27,6 +27,7 @@ class DelaunayHole {
   bool inside_perturbed(const Tetrahedron& tet, Index place, SphereTies ties) const;
   const Vec3& position(Index place) const { return mesh_->position(star_->link[place]); }
   int side(Index a, Index b, Index c, Index d) const;
+  bool fills_the_star() const;
   bool spheres_are_empty() const;
 
   const StarMesh* mesh_ = nullptr;
@@ -34,7 +35,8 @@ class DelaunayHole {
   std::vector<Vec3> points_;  // of the link, about the star's vertex
   std::vector<Index> rank_;   // of the link, in the order of coordinates
   std::vector<Triangle> front_;
-  std::vector<double> reach_;  // of each link vertex, along the pencil of spheres through a triangle
+  std::vector<std::uint64_t> front_name_;  // of each, to find it by
+  std::vector<double> reach_;              // of each link vertex, along the pencil of spheres through a triangle
   std::vector<Index> tied_;
   std::vector<Index> order_;
   std::vector<Tetrahedron> fill_;

@@ -147,35 +147,47 @@ void StarMesh::collapse(const Star& star, Index target) {
 }
 
 bool StarMesh::refill(std::span<const Index> cells, std::span<const Corner> faces, std::span<const Tetrahedron> fill) {
-  // Faces of the fill are numbered from 0, those of the hole from `hole` on.
+  // Faces of the fill are numbered from 0, those of the hole from `hole` on. Each must meet one other, at least one of
+  // the two in the fill.
   const auto hole = static_cast<Corner>(4 * fill.size());
-  open_.clear();
-  const auto open = [&](const Tetrahedron& tet, Index f, Corner face) {
+  pairs_.clear();
+  std::size_t table = 64;
+  while (table < 2 * (hole + faces.size())) table *= 2;
+  open_.assign(table, {0, no_index, no_index});
+  std::size_t open_faces = 0;
+  const auto meet = [&](const Tetrahedron& tet, Index f, Corner face) {
     Index a = tet[face_corners[f][0]], b = tet[face_corners[f][1]], c = tet[face_corners[f][2]];
     if (a > b) std::swap(a, b);
     if (b > c) std::swap(b, c);
     if (a > b) std::swap(a, b);
-    open_.push_back({std::uint64_t{a} << 32U | b, c, face});
+    const std::uint64_t smaller = std::uint64_t{a} << 32U | b;
+    std::size_t slot = ((smaller ^ std::uint64_t{c} << 17U) * 0x9E3779B97F4A7C15U >> 40U) & (table - 1);
+    while (open_[slot].largest != no_index && (open_[slot].smaller != smaller || open_[slot].largest != c)) {
+      slot = (slot + 1) & (table - 1);
+    }
+    OpenFace& open = open_[slot];
+    if (open.largest == no_index) {
+      open = {smaller, c, face};
+      ++open_faces;
+      return true;
+    }
+    if (open.face == no_index) return false;  // a third
+    pairs_.emplace_back(open.face, face);
+    open.face = no_index;
+    --open_faces;
+    return true;
   };
   for (std::size_t t = 0; t < fill.size(); ++t) {
-    for (Index f = 0; f < 4; ++f) open(fill[t], f, static_cast<Corner>(4 * t + f));
+    for (Index f = 0; f < 4; ++f) {
+      if (!meet(fill[t], f, static_cast<Corner>(4 * t + f))) return false;
+    }
   }
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    open(tetrahedra_[faces[i] / 4], faces[i] % 4, hole + static_cast<Corner>(i));
+    if (!meet(tetrahedra_[faces[i] / 4], faces[i] % 4, hole + static_cast<Corner>(i))) return false;
   }
-  std::sort(open_.begin(), open_.end(), [](const OpenFace& a, const OpenFace& b) {
-    return a.smaller != b.smaller   ? a.smaller < b.smaller
-           : a.largest != b.largest ? a.largest < b.largest
-                                    : a.face < b.face;
-  });
-  const auto same = [](const OpenFace& a, const OpenFace& b) {
-    return a.smaller == b.smaller && a.largest == b.largest;
-  };
-  if (open_.size() % 2 != 0) return false;
-  for (std::size_t i = 0; i < open_.size(); i += 2) {
-    const bool pair = same(open_[i], open_[i + 1]) && open_[i].face < hole &&
-                      (i + 2 == open_.size() || !same(open_[i + 2], open_[i]));
-    if (!pair) return false;
+  if (open_faces != 0) return false;
+  for (const auto& [one, other] : pairs_) {
+    if (one >= hole) return false;  // two of the hole's own: `one` came first, and the fill came before the hole
   }
 
   outside_.clear();
@@ -199,9 +211,8 @@ bool StarMesh::refill(std::span<const Index> cells, std::span<const Corner> face
     remember_corners(slots_.back());
     ++living_;
   }
-  for (std::size_t i = 0; i < open_.size(); i += 2) {
-    const Corner inner = 4 * slots_[open_[i].face / 4] + open_[i].face % 4;
-    const Corner other = open_[i + 1].face;
+  for (const auto& [one, other] : pairs_) {
+    const Corner inner = 4 * slots_[one / 4] + one % 4;
     join(inner, other < hole ? 4 * slots_[other / 4] + other % 4 : outside_[other - hole]);
   }
   return true;

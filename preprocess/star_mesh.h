@@ -91,12 +91,13 @@ class StarMesh {
   PlaceTable star_tetrahedra_, star_vertices_;  // of the star being gathered
   struct OpenFace {
     std::uint64_t smaller;  // its first two vertices, in ascending order
-    Index largest;
-    Corner face;
+    Index largest;          // no_index: an empty slot
+    Corner face;            // no_index: it was met
   };
-  std::vector<OpenFace> open_;   // of a refill
-  std::vector<Corner> outside_;  // behind each triangle of its hole
-  std::vector<Index> slots_;     // of its new tetrahedra
+  std::vector<OpenFace> open_;                    // faces of a refill, a hash table
+  std::vector<std::pair<Corner, Corner>> pairs_;  // of its faces that met
+  std::vector<Corner> outside_;                   // behind each triangle of its hole
+  std::vector<Index> slots_;                      // of its new tetrahedra
 };
 
 }  // namespace atomesh
