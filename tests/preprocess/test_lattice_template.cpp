@@ -132,8 +132,7 @@ TEST(LatticeTemplate, KnownPolytopes) {
   EXPECT_EQ(sizes(make_lattice_template(lattice("fcc").cell)), (Count{{4, 8}, {6, 4}}));
   EXPECT_EQ(sizes(make_lattice_template(lattice("bcc").cell)), (Count{{4, 12}}));
   EXPECT_EQ(sizes(make_lattice_template(lattice("nacl").cell)), (Count{{8, 8}}));
-  // Adamantane cages hold their ten atoms' empty sphere with four more around it: the empty tetrahedral sites see ten
-  // atoms, the bonds' other tetrahedra four.
+  // The tetrahedral interstice is as far from its atoms as they are from each other.
   const LatticeTemplate diamond = make_lattice_template(lattice("diamond").cell);
   EXPECT_NEAR(diamond.largest_void, lattice("diamond").nearest_neighbour, 1e-9);
   EXPECT_NEAR(make_lattice_template(lattice("fcc").cell).largest_void, 0.5 * 3.615, 1e-9);

@@ -140,7 +140,6 @@ std::vector<Lattice> crystals() {
   return all;
 }
 
-// What touches neither the surface nor a defect is stamped; at 1 % of the test's few atoms it would show.
 TEST(StampDelaunay, PerfectBlocksNeedNoTriangulation) {
   for (const Lattice& l : crystals()) {
     const Compared c = expect_delaunay(place(block(l, 18.0).positions, {{l.cell}}), radius_of(l), l.name);
