@@ -29,7 +29,10 @@ constexpr double same_radius = 1e-9;
 // Tetrahedra around an atom on no site have a vertex within this many times the crystal's largest void.
 constexpr double insert_reach = 1.6;
 // More atoms outside the mesh than this are not looked at one by one.
-constexpr std::size_t most_outside = 2000;
+constexpr std::size_t most_bare = 20'000;
+// Share of the atoms that a Delaunay mesh would hold and this one need not: atoms on the surface of which the sites
+// around lie in one plane or on one sphere with theirs, so that only noise gives them a tetrahedron.
+constexpr double most_missing = 1e-3;
 
 std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
@@ -167,6 +170,7 @@ IdealCrystal idealize(LatticeSites sites) {
 // radius reach no further than its double, so the points that near are all that matter.
 std::size_t count_meshed(std::span<const Vec3> points, std::span<const Index> asked, double radius,
                          Progress& progress) {
+  if (asked.empty()) return 0;
   std::vector<Vec3> places;
   for (const Index i : asked) places.push_back(points[i]);
   const NeighbourGrid grid(places, Box{}, 2.0 * radius, 2.0 * radius);
@@ -193,6 +197,18 @@ std::size_t count_meshed(std::span<const Vec3> points, std::span<const Index> as
     meshed += found ? 1 : 0;
   }
   return meshed;
+}
+
+std::vector<Index> bare_points(std::span<const Tetrahedron> tetrahedra, std::size_t count) {
+  std::vector<bool> used(count, false);
+  for (const Tetrahedron& t : tetrahedra) {
+    for (const Index v : t) used[v] = true;
+  }
+  std::vector<Index> bare;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!used[i]) bare.push_back(static_cast<Index>(i));
+  }
+  return bare;
 }
 
 std::vector<Tetrahedron> mesh_tolerantly(std::span<const Vec3> points, LatticeSites sites,
@@ -231,20 +247,24 @@ std::vector<Tetrahedron> mesh_tolerantly(std::span<const Vec3> points, LatticeSi
   std::sort(off.begin(), off.end());
   const std::vector<Index> outside = insert_points(tetrahedra, points, off, insert_reach * deepest, progress);
   report.inserted = off.size() - outside.size();
-  report.bare = outside.size();
-  const std::size_t meshed = outside.empty()                 ? 0
-                             : outside.size() > most_outside ? outside.size()
-                                                             : count_meshed(points, outside, radius, progress);
-  if (meshed > 0) {
-    report.why = fmt::format("{} atoms that are on no site of the crystal lie outside its tetrahedra", meshed);
+  drop_larger(tetrahedra, points, report.largest_radius, progress);
+
+  const std::vector<Index> bare = bare_points(tetrahedra, points.size());
+  report.bare = bare.size();
+  report.missing = bare.size() > most_bare ? bare.size() : count_meshed(points, bare, radius, progress);
+  if (static_cast<double>(report.missing) > most_missing * static_cast<double>(points.size())) {
+    report.why = fmt::format("{} atoms lie outside the tetrahedra of the crystal that a Delaunay mesh would hold",
+                             report.missing);
     return {};
   }
-  drop_larger(tetrahedra, points, report.largest_radius, progress);
   report.done = true;
   report.why = fmt::format(
-      "the atoms number the sites of one crystal ({} of them on none, {} Å rms from the sites overall): its "
+      "the atoms number the sites of one crystal ({} of them on none, {:.2g} Å rms from the sites overall): its "
       "tetrahedra were taken from the perfect crystal and {} of {} mended",
-      report.off_sites, fmt::format("{:.2g}", main.rms), report.mended, stamp.stamped + stamp.filled);
+      report.off_sites, main.rms, report.mended, stamp.stamped + stamp.filled);
+  if (report.missing > 0) {
+    report.why += fmt::format("; {} atoms on the surface that slivers would hold have none", report.missing);
+  }
   return tetrahedra;
 }
 

@@ -36,9 +36,10 @@ struct PatternReport {
   std::size_t filled = 0;       // tetrahedra that a Delaunay triangulation of what it left open gave
   std::size_t open_atoms = 0;   // atoms that that was given
   std::size_t off_sites = 0;    // tolerant: atoms on no site of the one crystal, ...
-  std::size_t inserted = 0;     // ... put into the tetrahedra around them, ...
-  std::size_t bare = 0;         // ... and left without, because carving would leave them so too
+  std::size_t inserted = 0;     // ... and those of them put into the tetrahedra around them
   std::size_t mended = 0;       // tolerant: inverted or flat tetrahedra replaced or, on the outside, removed
+  std::size_t bare = 0;         // tolerant: atoms without a tetrahedron, ...
+  std::size_t missing = 0;  // ... and those of them that a Delaunay mesh, carved, would hold: at most one in a thousand
 };
 
 // Two ways, tried in this order.

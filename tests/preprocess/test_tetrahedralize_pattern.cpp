@@ -337,6 +337,8 @@ TEST(TetrahedralizePattern, Samples) {
     const char way = !pattern.report.done ? '-' : pattern.report.delaunay ? 'e' : 't';
     EXPECT_EQ(way, ways.at(info.name)) << info.name << ": " << pattern.report.why;
     if (way == '-') continue;
+    // Of the sponge's ragged walls a few atoms hang on by slivers only.
+    EXPECT_LE(pattern.report.missing, info.name == "sponge" ? 20U : 0U) << info.name;
     EXPECT_EQ(validate(pattern.mesh), std::vector<std::string>{}) << info.name;
     EXPECT_EQ(validate(extract_surface(pattern.mesh), pattern.mesh), std::vector<std::string>{}) << info.name;
     EXPECT_GT(min_dihedral_degrees(pattern.mesh), 4.0) << info.name;
