@@ -13,7 +13,7 @@ namespace atomesh {
 
 namespace {
 
-constexpr std::size_t most_asked = 30'000, most_asked_around = 5'000;
+constexpr std::size_t most_asked = 10'000, most_asked_around = 3'000;
 // Share of the differences that must crowd about one value.
 constexpr double crowd = 0.3;
 // Pieces of fewer atoms, as a share of those asked, are not looked for.

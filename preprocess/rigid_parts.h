@@ -30,7 +30,7 @@ struct RigidParts {
 inline constexpr double rigid_tolerance = 1e-7;
 
 // Matrix and offsets are the values that differences of neighbouring atoms' positions crowd about, so that atoms out of
-// place have no say as long as a third are in place. Asks at most some 30,000 points, evenly chosen, of each patch.
+// place have no say as long as a third are in place. Asks at most some 10,000 points, evenly chosen, of each patch.
 RigidParts find_rigid_parts(std::span<const Vec3> points, const LatticeSites& sites,
                             Progress& progress = no_progress());
 
