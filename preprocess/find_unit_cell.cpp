@@ -19,12 +19,27 @@ constexpr std::size_t atoms_of_probe = 1500;
 constexpr std::size_t fewest_atoms = 24;
 // A cell that repeats less often is the box's, not the crystal's.
 constexpr std::size_t fewest_cells = 4;
-// A candidate of so much merit ends the search.
-constexpr double plenty = 0.93;
+// A candidate that explains so much, of which so many sites are taken, ends the search if strain does not blur it.
+constexpr double plenty = 0.97;
+constexpr double full = 0.9;
+// One of so much merit is the crystal's, if strained; one of less may be an average over a fault.
+constexpr double good = 0.9;
 // One that explains so much (a grain of many) is no chance: longer cells are not looked for.
 constexpr double some = 0.05;
 // Sites that fewer atoms sit on than this share of the fullest site's are no sites but interstitials'.
 constexpr double least_occupied = 0.5;
+
+// How the places are asked, one sweep after the other.
+struct Sweep {
+  std::size_t reach;   // into translation_reaches
+  std::size_t seeds;   // atoms that judge
+  std::size_t places;  // where there is no crystal, the far search is the one that takes time
+  bool closer;         // after a crystal was found that fits badly: between faults that lie close
+};
+constexpr std::array<Sweep, 4> sweeps{{{0, 400, places_asked, false},
+                                       {0, 120, places_asked, true},
+                                       {1, 400, places_asked, false},
+                                       {2, 400, places_asked / 4, false}}};
 
 std::string percent(double share) {
   return std::to_string(std::lround(100.0 * share)) + " %";
@@ -80,6 +95,15 @@ double merit(const Candidate& candidate, std::size_t atoms) {
          0.5 * (1.0 - candidate.occupancy) - 0.004 * static_cast<double>(candidate.cell.sites.size());
 }
 
+// Whether other places could hardly tell more: nearly all is explained, and as sharply as around the place asked.
+bool settles(const Candidate& candidate, std::size_t atoms) {
+  const Explained& sum = candidate.claims.sum;
+  const double count = static_cast<double>(sum.atoms);
+  const double blur = 0.03 * candidate.cell.nearest;
+  return count > plenty * static_cast<double>(atoms) && candidate.occupancy > full &&
+         sum.squares / (3.0 * count) < 1.4 * candidate.cell.rms * candidate.cell.rms + blur * blur;
+}
+
 // Sites that the sample as a whole does not fill are dropped and the species are the sample's majority. Whether
 // anything changed.
 bool revise_sites(Candidate& candidate) {
@@ -112,11 +136,14 @@ bool revise_sites(Candidate& candidate) {
   return true;
 }
 
+// The cell that is typical of the blocks, unless the atoms are clearly farther from its sites.
 void take_typical(const Atoms& atoms, const AtomBlocks& blocks, Candidate& candidate, Progress& progress) {
   const auto typical = typical_cell(atoms, blocks, candidate.cell, candidate.claims, progress);
   if (!typical) return;
+  Claims claims = explain_atoms(atoms, blocks, *typical, {}, {}, progress);
+  if (claims.sum.closeness < candidate.claims.sum.closeness - 0.01 * static_cast<double>(atoms.size())) return;
   candidate.cell = *typical;
-  candidate.claims = explain_atoms(atoms, blocks, candidate.cell, {}, {}, progress);
+  candidate.claims = std::move(claims);
 }
 
 // Reduced vectors; the basis starts with an atom of the rarest species at the origin and lists species after species.
@@ -175,10 +202,10 @@ std::optional<Candidate> best_candidate(const Atoms& atoms, const FindCellOption
   std::vector<Place> places;
   std::vector<FittedCell> seen;
   std::optional<Candidate> best;
-  for (const double reach : translation_reaches) {
-    // Where there is no crystal, the far search is the one that takes time.
-    const std::size_t asked = reach == translation_reaches.back() ? places_asked / 4 : places_asked;
-    for (std::size_t n = 0; n < asked; ++n) {
+  for (const Sweep& sweep : sweeps) {
+    if (sweep.closer && !best) continue;
+    const double reach = translation_reaches[sweep.reach];
+    for (std::size_t n = 0; n < sweep.places; ++n) {
       progress.update(0.5 * static_cast<double>(n) / places_asked);
       if (n == places.size()) {
         const Vec3 share = n == 0 ? Vec3(0.5) : spread_place(n, options.seed);
@@ -194,7 +221,7 @@ std::optional<Candidate> best_candidate(const Atoms& atoms, const FindCellOption
       for (const bool tell_species : {true, false}) {
         if (cell || (!tell_species && atoms.species_table.size() < 2)) break;
         const CellProposal proposal =
-            propose_cell(atoms, center, scale, {options.largest_basis, reach, tell_species}, progress);
+            propose_cell(atoms, center, scale, {options.largest_basis, reach, sweep.seeds, tell_species}, progress);
         trials.best_translation = std::max(trials.best_translation, proposal.best_translation);
         cell = proposal.cell;
         occupancy = proposal.occupancy;
@@ -214,9 +241,10 @@ std::optional<Candidate> best_candidate(const Atoms& atoms, const FindCellOption
       }
       take_typical(atoms, *blocks, candidate, progress);
       if (!best || merit(candidate, atoms.size()) > merit(*best, atoms.size())) best = std::move(candidate);
-      if (merit(*best, atoms.size()) > plenty) return best;
+      if (settles(*best, atoms.size())) return best;
     }
-    if (best && static_cast<double>(best->claims.sum.atoms) > some * count) return best;
+    const bool crystal = best && static_cast<double>(best->claims.sum.atoms) > some * count;
+    if (crystal && (sweep.closer || merit(*best, atoms.size()) > good)) return best;
   }
   return best;
 }

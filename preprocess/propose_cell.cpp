@@ -126,6 +126,7 @@ CellProposal propose_cell(const Atoms& atoms, const Vec3& center, const LocalSca
   TranslationOptions search;
   search.reach = options.reach * scale.spacing;
   search.box = atoms.box;
+  search.seeds = options.seeds;
   search.tell_species = options.tell_species;
   const TranslationSearch translations = find_translations(cluster, grid, scale, search);
   proposal.best_translation = translations.best;

@@ -15,6 +15,7 @@ inline constexpr std::array<double, 3> translation_reaches{4.2, 7.0, 11.0};
 struct ProposeOptions {
   std::size_t largest_basis = 64;
   double reach = translation_reaches.front();
+  std::size_t seeds = 400;  // atoms that judge translations, nearest to the place: few see a small undisturbed region
   bool tell_species = true;
 };
 

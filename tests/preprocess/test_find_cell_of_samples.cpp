@@ -68,17 +68,18 @@ TEST_P(SharedFiles, Crystals) {
 }
 
 // Lattice parameters: of the potentials the files were made with.
-INSTANTIATE_TEST_SUITE_P(
-    Files, SharedFiles,
-    testing::Values(File{"atomman__fcc_Al_base.dump", 1, 225, 4.05}, File{"atomman__fcc_Al_disl.dump", 1, 225, 4.05},
-                    File{"pyscal__conf.bcc", 1, 229, 3.2051}, File{"pyscal__conf.fcc.dump", 1, 225, 4.097},
-                    File{"qdlib__In1242Zn29As1108Cl460_HLE17_48ang_OPT.xyz", 2, 216, 6.001},
-                    File{"lammps_amorphous_Si.xyz", 0, 0, 0.0}, File{"dissolve__argon100000.xyz", 0, 0, 0.0}),
-    [](const auto& test) {
-      std::string name = test.param.name;
-      for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Files, SharedFiles,
+                         testing::Values(File{"atomman__fcc_Al_base.dump", 1, 225, 4.05},
+                                         File{"atomman__fcc_Al_disl.dump", 1, 225, 4.05},
+                                         File{"pyscal__conf.bcc", 1, 229, 3.2051},
+                                         File{"pyscal__conf.fcc.dump", 1, 225, 4.097},
+                                         File{"qdlib__In1242Zn29As1108Cl460_HLE17_48ang_OPT.xyz", 2, 216, 6.001},
+                                         File{"lammps_amorphous_Si.xyz", 0, 0, 0.0}),
+                         [](const auto& test) {
+                           std::string name = test.param.name;
+                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace atomesh
