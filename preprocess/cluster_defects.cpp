@@ -95,18 +95,21 @@ DefectKind defect_kind_from_name(std::string_view name) {
   throw UsageError(message + " Kinds: vacancy, extra, positional, mixed, substitution");
 }
 
-std::vector<DefectCluster> cluster_defects(const Material& material, double distance) {
+std::vector<DefectCluster> cluster_defects(const Material& material, double distance, Progress& progress) {
   if (!(distance >= 0.0)) {
     throw UsageError("distance of defect clusters: expected a length in Å, got " + std::to_string(distance));
   }
   const Members members = collect(material);
   if (members.positions.empty()) return {};
-  if (distance == 0.0) distance = joining * median_nearest_distance(material.atoms.positions, material.atoms.box);
+  if (distance == 0.0)
+    distance = joining * median_nearest_distance(material.atoms.positions, material.atoms.box, progress);
   if (distance == 0.0) distance = 1.0;  // a single atom has no neighbour
-  const NeighbourGrid grid(members.positions, material.atoms.box, distance, distance);
+  const NeighbourGrid grid(members.positions, material.atoms.box, distance, distance, progress);
   Sets sets(members.positions.size());
   std::vector<Index> slots;
+  std::size_t looked = 0;
   for (const Index home : grid.home_slots()) {
+    if (++looked % 4096 == 0) progress.check();
     grid.find(grid.position(home), distance, slots, home);
     for (const Index slot : slots) sets.join(grid.point(home), grid.point(slot));
   }
@@ -115,6 +118,7 @@ std::vector<DefectCluster> cluster_defects(const Material& material, double dist
   std::vector<Index> number(members.positions.size(), no_index);  // cluster of each root
   std::vector<std::vector<Index>> parts;
   for (Index m = 0; m < members.positions.size(); ++m) {
+    if (m % 65536 == 0) progress.check();
     Index& cluster = number[sets.root(m)];
     if (cluster == no_index) {
       cluster = static_cast<Index>(clusters.size());
@@ -135,6 +139,7 @@ std::vector<DefectCluster> cluster_defects(const Material& material, double dist
   std::vector<Index> substitution_of(extras.size(), no_index);
   for (Index s = 0; s < substitutions.size(); ++s) substitution_of[extra_of[substitutions[s].atom]] = s;
   for (std::size_t c = 0; c < clusters.size(); ++c) {
+    progress.check();
     DefectCluster& cluster = clusters[c];
     // Members on the other side of a periodic face are taken next to the first one.
     const Vec3 first = members.positions[parts[c][0]];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/material.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -31,6 +32,7 @@ DefectKind defect_kind_from_name(std::string_view name);
 // is named by the sites in it (substitution: each vacancy is filled by one of its extra atoms and none is left over;
 // mixed: both vacancies and extra atoms otherwise), one without sites by its largest values. The
 // centre is that of the members' bounding box. Throws UsageError for a distance that is negative or no number.
-std::vector<DefectCluster> cluster_defects(const Material& material, double distance = 0.0);
+std::vector<DefectCluster> cluster_defects(const Material& material, double distance = 0.0,
+                                           Progress& progress = no_progress());
 
 }  // namespace atomesh

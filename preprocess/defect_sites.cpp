@@ -32,10 +32,12 @@ struct Candidate {
   enum class Verdict : std::uint8_t { open, vacancy, outside } verdict = Verdict::open;
 };
 
-std::vector<Vote> collect_votes(const SiteSearch& search) {
+std::vector<Vote> collect_votes(const SiteSearch& search, Progress& progress) {
   std::vector<Vote> votes;
   const std::size_t species_count = search.sample.atoms.species_table.size();
+  std::size_t looked = 0;
   for (const Misfit& m : search.misfits.atoms) {
+    if (++looked % 65536 == 0) progress.check();
     if (m.kind == no_kind || !search.reliable(m.slot)) continue;
     const SiteKind& kind = search.sample.features.kinds[m.kind];
     for (const std::uint32_t e : search.misfits.missing_of(m)) {
@@ -60,7 +62,7 @@ std::vector<Vec3> places(const std::vector<Vote>& votes) {
 std::vector<Candidate> gather(const SiteSearch& search, const std::vector<Vote>& votes, Progress& progress) {
   std::vector<Candidate> candidates;
   const double spread = vote_spread * search.sample.features.nearest;
-  const NeighbourGrid grid(places(votes), search.sample.atoms.box, spread, spread);
+  const NeighbourGrid grid(places(votes), search.sample.atoms.box, spread, spread, progress);
   std::vector<std::uint8_t> used(votes.size(), 0);
   std::vector<Index> slots;
   std::vector<std::uint16_t> kinds;
@@ -259,7 +261,7 @@ bool inside_a_grain(const SiteSearch& search, const std::vector<Index>& slots) {
 }  // namespace
 
 std::vector<VacancySite> find_vacancies(const SiteSearch& search, Progress& progress) {
-  const std::vector<Vote> votes = collect_votes(search);
+  const std::vector<Vote> votes = collect_votes(search, progress);
   std::vector<Candidate> candidates = gather(search, votes, progress);
   progress.update(0.3);
   // Outside a flat surface a site gathers less than half of its near neighbours' votes; most are left out here.

@@ -235,7 +235,11 @@ void NeighbourGrid::sort_into_cells(std::size_t points, Progress& progress) {
     std::vector<std::uint64_t> key(slots);
     in_pieces(slots, [&](std::size_t s) { key[s] = key_of(s); });
     std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
+    std::size_t compared = 0;
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      if (++compared % (16 * piece) == 0) progress.check();
+      return key[a] < key[b];
+    });
     const std::size_t capacity = std::bit_ceil(2 * slots);
     table_key_.assign(capacity, no_key);
     table_range_.resize(capacity);
@@ -374,7 +378,7 @@ std::size_t NeighbourGrid::find_in(const GridBlock& block, Index slot, double ra
   return found;
 }
 
-double median_nearest_distance(std::span<const Vec3> points, const Box& box) {
+double median_nearest_distance(std::span<const Vec3> points, const Box& box, Progress& progress) {
   if (points.size() < 2) return 0.0;
   const Bounds bounds = bounds_of(points);
   // Start from the spacing of as many points spread evenly (but of atoms, where that is far more) and widen while
@@ -385,7 +389,7 @@ double median_nearest_distance(std::span<const Vec3> points, const Box& box) {
   std::vector<double> nearest;
   std::vector<Index> slots;
   for (double radius = std::min(1.5 * spacing, 4.0);; radius *= 2.0) {
-    const NeighbourGrid grid(points, box, radius, radius);
+    const NeighbourGrid grid(points, box, radius, radius, progress);
     nearest.clear();
     std::size_t asked = 0;
     for (std::size_t n = 0; n < grid.home_slots().size(); n += stride, ++asked) {

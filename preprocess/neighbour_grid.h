@@ -89,6 +89,6 @@ class NeighbourGrid {
 
 // The median over the points of the distance to the nearest other one, Å, images included (at most 20,000 points are
 // asked, evenly chosen); 0 for fewer than two points.
-double median_nearest_distance(std::span<const Vec3> points, const Box& box);
+double median_nearest_distance(std::span<const Vec3> points, const Box& box, Progress& progress = no_progress());
 
 }  // namespace atomesh

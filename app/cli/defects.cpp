@@ -157,7 +157,7 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
         "has no defect values, because no unit cell was known; preprocess the atoms with --unit-cell FILE");
   }
   session.progress().stage("cluster_defects");
-  const std::vector<DefectCluster> all = cluster_defects(material, arguments.distance);
+  const std::vector<DefectCluster> all = cluster_defects(material, arguments.distance, session.progress());
   std::vector<DefectCluster> clusters;
   std::copy_if(all.begin(), all.end(), std::back_inserter(clusters),
                [&](const DefectCluster& cluster) { return !one_kind || cluster.kind == kind; });
