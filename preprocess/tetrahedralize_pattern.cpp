@@ -307,11 +307,12 @@ std::vector<Tetrahedron> tetrahedralize_pattern(std::span<const Vec3> points, La
   report.in_place = parts.in_place;
   report.undisturbed = parts.undisturbed;
   report.parts = parts.parts;
-  if (parts.in_place >= options.least_in_place || parts.undisturbed >= options.least_undisturbed) {
+  const std::string why_not = objection(points.size(), sites, options);
+  const double enough = why_not.empty() ? options.least_undisturbed : options.least_undisturbed_alone;
+  if (parts.in_place >= options.least_in_place || parts.undisturbed >= enough) {
     split_into_rigid_parts(points, parts, sites);
     return mesh_exactly(points, sites, options, report, progress);
   }
-  const std::string why_not = objection(points.size(), sites, options);
   if (!why_not.empty()) {
     report.why =
         fmt::format("only {} of the atoms are on their sites to rounding, and {}", percent(parts.in_place), why_not);

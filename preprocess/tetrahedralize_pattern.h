@@ -15,10 +15,12 @@ struct PatternOptions {
   // Å: tetrahedra with a larger circumsphere are left out, as carve() would. 0: what carve() finds by itself. The
   // pattern fills what is narrower only, so it does not serve where nothing is to be carved (infinity).
   double largest_radius = 0.0;
-  // Share of the atoms that must be on their sites to rounding, or be so with all around them, for the exact way. Below
-  // the second a Delaunay mesh from scratch is as fast.
+  // The exact way is taken where this share of the atoms is on its sites to rounding, ...
   double least_in_place = 0.9;
-  double least_undisturbed = 0.3;
+  // ... or this share with all the atoms around: so much it need not triangulate.
+  double least_undisturbed = 0.5;
+  // The latter where the tolerant way cannot be taken; below it a Delaunay mesh from scratch is as fast.
+  double least_undisturbed_alone = 0.3;
   // Share of the atoms that may be on no site of the one crystal for the tolerant way.
   double most_off_sites = 0.03;
 };
