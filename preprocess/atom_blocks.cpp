@@ -15,7 +15,7 @@ constexpr std::int64_t most_blocks = std::int64_t{1} << 20;  // along one axis, 
 
 }  // namespace
 
-AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge) : edge_(edge) {
+AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge, const Progress& progress) : edge_(edge) {
   Bounds bounds;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3& p = positions[i];
@@ -24,6 +24,7 @@ AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge) : edge_(edg
     }
     bounds.add(p);
   }
+  progress.check();
   start_.push_back(0);
   if (positions.empty()) return;
   min_ = bounds.min;
@@ -36,6 +37,7 @@ AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge) : edge_(edg
   if (all <= positions.size() + 65536) {
     std::vector<Index> next(all + 1, 0);
     for (const Vec3& p : positions) ++next[key_of(p) + 1];
+    progress.check();
     table_.assign(all, no_index);
     for (std::uint64_t key = 0; key < all; ++key) {
       if (next[key + 1] > 0) {
@@ -45,6 +47,7 @@ AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge) : edge_(edg
       next[key + 1] += next[key];
       if (table_[key] != no_index) start_.push_back(next[key + 1]);
     }
+    progress.check();
     for (std::size_t i = 0; i < positions.size(); ++i) order_[next[key_of(positions[i])]++] = static_cast<Index>(i);
   } else {
     std::iota(order_.begin(), order_.end(), Index{0});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -16,7 +17,7 @@ namespace atomesh {
 class AtomBlocks {
  public:
   // Cubic blocks of `edge` Å. Positions must be finite (throws Error naming the first that is not).
-  AtomBlocks(std::span<const Vec3> positions, double edge);
+  AtomBlocks(std::span<const Vec3> positions, double edge, const Progress& progress = no_progress());
 
   std::size_t size() const { return keys_.size(); }
   // Ascending indices.

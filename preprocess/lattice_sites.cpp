@@ -72,9 +72,11 @@ void span_cells(std::span<const Index> atoms, const std::vector<LatticeSite>& of
 
 // Of two atoms on one site the nearer stays, the first of two equally near.
 void part_sharers(std::span<const Index> atoms, const std::vector<float>& squared, const LatticePatch& patch,
-                  std::size_t basis, std::vector<LatticeSite>& of) {
+                  std::size_t basis, std::vector<LatticeSite>& of, const Progress& progress) {
   SiteTable table(patch.min, patch.max, basis, atoms.size());
+  std::size_t n = 0;
   for (const Index i : atoms) {
+    if (n++ % atoms_per_range == 0) progress.check();
     const LatticeSite site = of[i];
     const Index other = table.atom(site.cell, site.basis);
     if (other != no_index && squared[other] <= squared[i]) {
@@ -120,13 +122,14 @@ class PatchFit {
                    patch.matrix * (Vec3(first.cell[0], first.cell[1], first.cell[2]) + fraction_[first.basis]);
   }
 
-  void run() {
+  void run(const Progress& progress) {
     improve(sum(0.0));
     Moments now = sum(0.0);
     for (int round = 0; round < 2 && now.squared > 0.0; ++round) {
       const double scale = std::sqrt(now.squared / now.weight);
       // Rounding alone: nothing left to improve.
       if (scale < 1e-12 * extent()) break;
+      progress.check();
       improve(sum(scale));
       now = sum(scale);
     }
@@ -222,7 +225,7 @@ LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, co
 
   std::vector<LatticeWalk::Patch> begun;
   {
-    LatticeWalk walk(atoms, crystal, walk_patterns, options.smallest_patch, sites.of);
+    LatticeWalk walk(atoms, crystal, walk_patterns, options.smallest_patch, sites.of, progress);
     begun = walk.run(progress);
     const ByPatch by_patch(sites.of, begun.size());
     for (std::size_t p = 0; p < begun.size(); ++p) {
@@ -230,7 +233,7 @@ LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, co
       LatticePatch patch;
       span_cells(by_patch.atoms(p), sites.of, patch);
       const std::size_t basis = sites.patterns[begun[p].pattern].cell.basis.size();
-      if (patch.atoms > 0) part_sharers(by_patch.atoms(p), walk.squared(), patch, basis, sites.of);
+      if (patch.atoms > 0) part_sharers(by_patch.atoms(p), walk.squared(), patch, basis, sites.of, progress);
     }
   }
 
@@ -258,7 +261,7 @@ LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, co
     patch.pattern = begun[order[n]].pattern;
     patch.seams = begun[order[n]].seams;
     span_cells(by_patch.atoms(n), sites.of, patch);
-    PatchFit(by_patch.atoms(n), atoms, sites, patch).run();
+    PatchFit(by_patch.atoms(n), atoms, sites, patch).run(progress);
   }
   progress.update(1.0);
   return sites;

@@ -78,13 +78,13 @@ class FrameFit {
 }  // namespace
 
 LatticeWalk::LatticeWalk(const Atoms& atoms, const Crystal& crystal, std::span<const WalkPattern> patterns,
-                         std::size_t smallest_patch, std::vector<LatticeSite>& of)
+                         std::size_t smallest_patch, std::vector<LatticeSite>& of, const Progress& progress)
     : atoms_(atoms),
       crystal_(crystal),
       patterns_(patterns),
       smallest_patch_(smallest_patch),
       of_(of),
-      blocks_(atoms.positions, block_edge(patterns)) {
+      blocks_(atoms.positions, block_edge(patterns), progress) {
   of_.assign(atoms.size(), {});
   squared_.assign(atoms.size(), 0.0F);
   first_frame_.assign(blocks_.size(), no_index);

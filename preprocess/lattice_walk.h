@@ -28,7 +28,7 @@ struct WalkPattern {
 class LatticeWalk {
  public:
   LatticeWalk(const Atoms& atoms, const Crystal& crystal, std::span<const WalkPattern> patterns,
-              std::size_t smallest_patch, std::vector<LatticeSite>& of);
+              std::size_t smallest_patch, std::vector<LatticeSite>& of, const Progress& progress = no_progress());
 
   struct Patch {
     std::uint16_t pattern = 0;

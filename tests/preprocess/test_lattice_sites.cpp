@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "preprocess/lattice_sites.h"
 #include "tests/support/lattices.h"
@@ -394,6 +395,13 @@ TEST(LatticeSites, DoesNotDependOnThreads) {
   EXPECT_EQ(one.of, three.of);
   EXPECT_EQ(one.patches[0].matrix, three.patches[0].matrix);
   EXPECT_EQ(one.patches[0].rms, three.patches[0].rms);
+}
+
+TEST(LatticeSites, CanBeCancelled) {
+  const Atoms atoms = test::cut_block(test::lattice("nacl").cell, 8, 8, 8);
+  Progress cancelled;
+  cancelled.request_cancel();
+  EXPECT_THROW(assign_lattice_sites(atoms, {{test::lattice("nacl").cell}, {}}, {}, cancelled), CancelledError);
 }
 
 TEST(SiteTable, FindsEveryAtomAndNothingElse) {
