@@ -22,6 +22,7 @@ constexpr Part parts[] = {
     {"simplify", bench_simplify},
     {"pipeline", bench_pipeline},
     {"truth", bench_truth},
+    {"find_unit_cell", bench_find_unit_cell},
 };
 
 }  // namespace

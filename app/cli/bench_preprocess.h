@@ -41,5 +41,7 @@ void bench_simplify(const PreprocessBench& bench);
 void bench_pipeline(const PreprocessBench& bench);
 // Planted defects found, and what was found without being planted.
 void bench_truth(const PreprocessBench& bench);
+// Unit cells of common structures and of the ten samples, found from the atoms alone.
+void bench_find_unit_cell(const PreprocessBench& bench);
 
 }  // namespace atomesh::cli
