@@ -38,7 +38,7 @@ struct Sweep {
 };
 constexpr std::array<Sweep, 4> sweeps{{{0, 400, places_asked, false},
                                        {0, 120, places_asked, true},
-                                       {1, 400, places_asked, false},
+                                       {1, 400, places_asked / 2, false},
                                        {2, 400, places_asked / 4, false}}};
 
 std::string percent(double share) {
