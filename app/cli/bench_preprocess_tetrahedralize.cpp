@@ -67,20 +67,31 @@ double deepest_in_sphere(const TetMesh& mesh) {
   return *std::max_element(deepest.begin(), deepest.end());
 }
 
-// Atoms whose cell is known → mesh, by the pattern.
-TetMesh mesh_by_pattern(const Sample& sample, TetrahedralizeReport& report, Progress& progress) {
+// Atoms whose cell is known → mesh, by the pattern. `steps` says how long each of its steps took.
+TetMesh mesh_by_pattern(const Sample& sample, TetrahedralizeReport& report, std::string& steps, Session& session) {
+  const auto timed = [&](const char* step, auto&& work) {
+    const Times times = measure(1, session, step, work, 0);
+    steps += fmt::format("{}{} {}", steps.empty() ? "" : ", ", step, milliseconds(times.median));
+  };
+  steps.clear();
+  Progress& progress = session.progress();
   Crystal crystal;
   crystal.grains = {*sample.unit_cell};
-  LatticeSites sites = assign_lattice_sites(sample.atoms, crystal, {}, progress);
+  LatticeSites sites;
   PatternReport pattern;
   TetMesh mesh;
-  mesh.vertices = sample.atoms.positions;
-  mesh.tetrahedra = tetrahedralize_pattern(mesh.vertices, std::move(sites), {}, pattern, progress);
+  timed("sites", [&] { sites = assign_lattice_sites(sample.atoms, crystal, {}, progress); });
+  timed("pattern", [&] {
+    mesh.vertices = sample.atoms.positions;
+    mesh.tetrahedra = tetrahedralize_pattern(mesh.vertices, std::move(sites), {}, pattern, progress);
+  });
   if (!pattern.done) throw UnavailableError(pattern.why);
-  mesh.vertex_atom.resize(mesh.vertices.size());
-  std::iota(mesh.vertex_atom.begin(), mesh.vertex_atom.end(), Index{0});
+  timed("order", [&] {
+    mesh.vertex_atom.resize(mesh.vertices.size());
+    std::iota(mesh.vertex_atom.begin(), mesh.vertex_atom.end(), Index{0});
+    put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size());
+  });
   mesh.delaunay = pattern.delaunay;
-  put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size());
   report.mesher = "pattern";
   report.why = pattern.why;
   return mesh;
@@ -130,13 +141,14 @@ class Case {
     row.peer = "CGAL";
     bench_.result.add(std::move(row));
     table_.row({name_, "CGAL", milliseconds(stock_.times.median), milliseconds(stock_.times.cpu), "1",
-                grouped(stock_.tetrahedra), fmt::format("{:.0f}", stock_.bytes_each()), "", ""});
+                grouped(stock_.tetrahedra), fmt::format("{:.0f}", stock_.bytes_each()), "", "", ""});
   }
 
   void measure_ours(const std::string& mesher) {
     TetrahedralizeOptions options;
     options.mesher = mesher;
     TetrahedralizeReport report;
+    std::string steps;  // of the pattern, ms
     TetMesh mesh;
     Measured ours;
     try {
@@ -145,13 +157,13 @@ class Case {
           mesher == "tetgen" ? 1 : bench_.options.repeats, bench_.session, name_ + ": " + mesher,
           [&] {
             mesh = {};
-            mesh = mesher == "pattern" ? mesh_by_pattern(sample_, report, bench_.session.progress())
+            mesh = mesher == "pattern" ? mesh_by_pattern(sample_, report, steps, bench_.session)
                                        : tetrahedralize(sample_.atoms, options, report, bench_.session.progress());
           },
           0);
       ours.bytes = memory.grown();
     } catch (const UnavailableError& error) {
-      table_.row({name_, mesher, "-", "-", "-", "-", "-", error.what(), ""});
+      table_.row({name_, mesher, "-", "-", "-", "-", "-", error.what(), "", ""});
       return;
     }
     ours.tetrahedra = mesh.tetrahedra.size();
@@ -166,6 +178,7 @@ class Case {
     row.max_error = deepest;
     row.more.insert(row.more.end(), {{"peer_ms", stock_.times.median},
                                      {"ratio", ratio},
+                                     {"steps_ms", steps.empty() ? Json() : Json(steps)},
                                      {"cpu_ratio", stock_.times.cpu / ours.times.cpu},
                                      {"valid", valid},
                                      {"delaunay", delaunay}});
@@ -206,7 +219,8 @@ class Case {
 }  // namespace
 
 void bench_tetrahedralize(const PreprocessBench& bench) {
-  TextTable table({"crystal", "mesher", "ms", "CPU ms", "times CGAL", "tetrahedra", "peak B/tet", "mesh", "required"});
+  TextTable table(
+      {"crystal", "mesher", "ms", "CPU ms", "times CGAL", "tetrahedra", "peak B/tet", "mesh", "steps, ms", "required"});
   std::vector<std::size_t> sizes{bench.atoms(200000)};
   if (bench.options.full && bench.options.atoms == 0) sizes.push_back(1000000);
   const bool small = sizes[0] <= 50000;
