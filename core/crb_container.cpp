@@ -240,7 +240,9 @@ CrbReader::CrbReader(std::string_view bytes, std::string path) : bytes_(bytes), 
     throw InputError(path_, 0, "section header: cut off inside the table of sections");
   }
   table_.resize(header.sections);
-  std::memcpy(table_.data(), bytes.data() + sizeof(header), header.sections * sizeof(CrbEntry));
+  if (!table_.empty()) {
+    std::memcpy(table_.data(), bytes.data() + sizeof(header), header.sections * sizeof(CrbEntry));
+  }
   if (checksum_of(header, std::as_bytes(std::span(table_))) != header.checksum) {
     throw InputError(path_, 0, "section header: damaged (its checksum does not match); copy or make the file again");
   }

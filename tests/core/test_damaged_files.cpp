@@ -56,16 +56,17 @@ void reseal(std::string& bytes) {
   std::memcpy(&header, bytes.data(), sizeof(header));
   if (header.sections > 64 || bytes.size() < sizeof(header) + header.sections * sizeof(CrbEntry)) return;
   std::vector<CrbEntry> table(header.sections);
-  std::memcpy(table.data(), bytes.data() + sizeof(header), table.size() * sizeof(CrbEntry));
+  const std::size_t size = table.size() * sizeof(CrbEntry);
+  if (size > 0) std::memcpy(table.data(), bytes.data() + sizeof(header), size);
   for (CrbEntry& entry : table) {
     if (entry.offset > bytes.size() || entry.stored > bytes.size() - entry.offset) continue;
     entry.checksum = XXH3_64bits(bytes.data() + entry.offset, entry.stored);
   }
   std::string sealed(bytes.data(), offsetof(CrbHeader, checksum));
-  sealed.append(reinterpret_cast<const char*>(table.data()), table.size() * sizeof(CrbEntry));
+  if (size > 0) sealed.append(reinterpret_cast<const char*>(table.data()), size);
   header.checksum = XXH3_64bits(sealed.data(), sealed.size());
   std::memcpy(bytes.data(), &header, sizeof(header));
-  std::memcpy(bytes.data() + sizeof(header), table.data(), table.size() * sizeof(CrbEntry));
+  if (size > 0) std::memcpy(bytes.data() + sizeof(header), table.data(), size);
 }
 
 CrbEntry& entry_of(std::string& bytes, std::string_view name) {
