@@ -46,8 +46,8 @@ int run_bench(const BenchArguments& arguments, Session& session) {
     options.atoms = arguments.atoms;
     if (arguments.repeats > 0) options.repeats = arguments.repeats;
     bench_seed_table(options, session, result);
+    session.print_text(result.text());
   }
-  session.print_text(result.text());
   if (!arguments.markdown.empty()) {
     AtomicFile file(arguments.markdown);
     file.write(result.markdown());

@@ -44,12 +44,16 @@ void bench_preprocess(const PreprocessBenchOptions& options, Session& session, B
   for (const Part& part : parts) {
     const bool wanted = options.parts.empty() ||
                         std::find(options.parts.begin(), options.parts.end(), part.name) != options.parts.end();
-    if (wanted) part.run({options, session, result});
+    if (!wanted) continue;
+    const std::size_t first = result.tables.size();
+    part.run({options, session, result});
+    session.print_text(result.text(first));  // minutes before the last part is done
   }
   BenchTable requirements = result.requirements();
   requirements.caption +=
       fmt::format(" {}. Commit {}. Made by `atomesh bench preprocess`.", machine_name(), build_commit());
   result.tables.push_back(std::move(requirements));
+  session.print_text(result.text(result.tables.size() - 1));
 }
 
 }  // namespace atomesh::cli

@@ -18,7 +18,8 @@ struct PreprocessBenchOptions {
 
 std::vector<std::string> preprocess_bench_parts();
 
-// Adds each part's table, its rows and at last the table of requirements. Throws UsageError for an unknown part.
+// Adds each part's tables and rows, and at last the table of requirements; prints each table when it is there. Throws
+// UsageError for an unknown part.
 void bench_preprocess(const PreprocessBenchOptions& options, Session& session, BenchResult& result);
 
 // One part's work.

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <span>
 
 #include "app/cli/machine.h"
 #include "core/memory.h"
@@ -104,9 +105,9 @@ BenchTable BenchResult::requirements() const {
   return result;
 }
 
-std::string BenchResult::text() const {
+std::string BenchResult::text(std::size_t first) const {
   std::string out;
-  for (const BenchTable& table : tables) {
+  for (const BenchTable& table : std::span(tables).subspan(first)) {
     if (!table.title.empty()) out += table.title + "\n";
     out += table.table.text();
     if (!table.caption.empty()) out += table.caption + "\n";

@@ -119,7 +119,8 @@ class BenchResult {
   // Every requirement of every row, in one table: what, required, measured, met.
   BenchTable requirements() const;
   bool has_requirements() const { return !required_.empty(); }
-  std::string text() const;
+  // Of the tables from the `first` on.
+  std::string text(std::size_t first = 0) const;
   std::string markdown() const;
 
  private:
