@@ -192,7 +192,7 @@ class Case {
     const std::string soundness = !valid ? "NOT VALID" : delaunay ? "valid, Delaunay" : "valid, not Delaunay";
     table_.row({name_, report.mesher, milliseconds(ours.times.median), milliseconds(ours.times.cpu),
                 short_number(ratio), grouped(ours.tetrahedra), fmt::format("{:.0f}", ours.bytes_each()), soundness,
-                required});
+                steps, required});
   }
 
   BenchRow make_row(const std::string& what, const Measured& measured, int cores) const {
