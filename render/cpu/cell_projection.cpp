@@ -118,7 +118,7 @@ class Drawing {
     if (layers_) layers_->find(number, tile.layers);
     const BlockScratch scratch = tile.scratch();
     std::uint64_t steps = 0;
-    for (int b = 0; b < blocks_per_side * blocks_per_side; ++b) {
+    for (int b = 0; b < blocks_per_tile; ++b) {
       const std::span<const std::uint32_t> cells = tile.cells_of(b);
       const bool layered = tile.layers.any_in(b);
       if (cells.empty() && !layered) continue;
@@ -147,7 +147,7 @@ class Drawing {
   }
 
   void set_up_tile(std::span<const Index> cells, int first_column, int first_row, Tile& tile) const {
-    tile.resize(cells.size());
+    const SetupOutput output = tile.resize(cells.size());
     const bool layered = scene_.mode == Mode::volume_surface;
     SetupInput input{};
     input.vertices = vertices_.camera.data();
@@ -158,19 +158,13 @@ class Drawing {
     input.count = cells.size();
     input.column = first_column;
     input.row = first_row;
-    kernel_.setup(view_, input, tile.planes.data(), tile.values.data(), tile.keys.data());
+    kernel_.setup(view_, input, output);
+    if (layered) return;
     for (std::size_t n = 0; n < cells.size(); ++n) {
+      if (tile.blocks[n] == 0) continue;
       CellValues& values = tile.values[n];
-      if (!layered) {
-        values.first_interval = intervals_.find(values.low[0]);
-        values.last_interval = intervals_.find(values.high[0]);
-      }
-      const PixelBox box = box_of(cells[n]);
-      const auto block = [](int pixel, int first) {
-        return static_cast<std::uint8_t>(std::clamp(pixel - first, 0, tile_side - 1) / block_side);
-      };
-      tile.ranges[n] = {block(box.first_column, first_column), block(box.last_column, first_column),
-                        block(box.first_row, first_row), block(box.last_row, first_row)};
+      values.first_interval = intervals_.find(values.low[0]);
+      values.last_interval = intervals_.find(values.high[0]);
     }
   }
 

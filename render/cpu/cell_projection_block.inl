@@ -6,30 +6,27 @@ namespace atomesh::ATOMESH_ISA {
 // Keeps `order`, the block's cells so far, sorted so that on every ray nearer segments stand before farther ones.
 class Order {
  public:
-  explicit Order(const BlockScratch& scratch) : scratch_(scratch) {}
-
-  std::uint32_t count() const { return count_; }
-
-  // Adds the cell `added`, whose depths are in the scratch. False when the cells overlap in a cycle, so that no order
-  // is right for all of the block's rays; the cell is then last.
-  bool add(std::uint32_t added, const Lanes& u_in, const Mask& lanes) {
+  // Adds the cell `added`, of which there are that many already, with its depths in the scratch, and which meets the
+  // rays `lanes`; if there are none, the next one takes its place. False when the cells overlap in a cycle, so that no
+  // order is right for all of the block's rays; the cell is then last.
+  bool add(const BlockScratch& scratch, std::uint32_t added, const Lanes& u_in, const Mask& lanes) {
     const Mask wrong = lanes & (u_in < last_);
     last_ = select(lanes, max(u_in, last_), last_);
-    scratch_.order[count_++] = added;
-    const unsigned wrong_lanes = bits(wrong);
-    return wrong_lanes == 0 || move_forward(added, u_in, lanes, wrong_lanes);
+    scratch.order[added] = added;
+    return !any(wrong) || move_forward(scratch, added, u_in, lanes, bits(wrong));
   }
 
  private:
   // The added cell belongs before some earlier ones. Those of them that must follow it (directly or because they follow
   // one that must) move behind it in their present order; the others keep their place.
-  bool move_forward(std::uint32_t added, const Lanes& u_in, const Mask& lanes, unsigned unsettled) {
-    std::uint32_t first = count_ - 1;
-    for (std::uint32_t at = count_ - 1; at-- > 0 && unsettled != 0;) {
-      const std::uint32_t other = scratch_.order[at];
-      const unsigned shared = scratch_.lanes[other] & unsettled;
+  static __attribute__((noinline)) bool move_forward(const BlockScratch& scratch, std::uint32_t added, Lanes u_in,
+                                                     Mask lanes, unsigned unsettled) {
+    std::uint32_t first = added;
+    for (std::uint32_t at = added; at-- > 0 && unsettled != 0;) {
+      const std::uint32_t other = scratch.order[at];
+      const unsigned shared = scratch.lanes[other] & unsettled;
       if (shared == 0) continue;
-      const unsigned farther = bits(load(scratch_.u_in + 16 * other) > u_in) & shared;
+      const unsigned farther = bits(load(scratch.u_in + 16 * other) > u_in) & shared;
       if (farther != 0) first = at;
       unsettled &= ~(shared & ~farther);  // on these rays all that stand before are nearer still
     }
@@ -37,25 +34,23 @@ class Order {
     std::uint32_t kept = first;
     std::uint32_t moved = 0;
     bool cyclic = false;
-    for (std::uint32_t at = first; at + 1 < count_; ++at) {
-      const std::uint32_t other = scratch_.order[at];
-      const Mask other_lanes = mask_of(scratch_.lanes[other]);
-      const Lanes other_in = load(scratch_.u_in + 16 * other);
+    for (std::uint32_t at = first; at < added; ++at) {
+      const std::uint32_t other = scratch.order[at];
+      const Mask other_lanes = mask_of(scratch.lanes[other]);
+      const Lanes other_in = load(scratch.u_in + 16 * other);
       if (any(other_lanes & (other_in > nearest_moved))) {
         cyclic |= any(other_lanes & lanes & (other_in < u_in));
         nearest_moved = select(other_lanes, min(other_in, nearest_moved), nearest_moved);
-        scratch_.moved[moved++] = other;
+        scratch.moved[moved++] = other;
       } else {
-        scratch_.order[kept++] = other;
+        scratch.order[kept++] = other;
       }
     }
-    scratch_.order[kept++] = added;
-    for (std::uint32_t i = 0; i < moved; ++i) scratch_.order[kept++] = scratch_.moved[i];
+    scratch.order[kept++] = added;
+    for (std::uint32_t i = 0; i < moved; ++i) scratch.order[kept++] = scratch.moved[i];
     return !cyclic;
   }
 
-  const BlockScratch& scratch_;
-  std::uint32_t count_ = 0;
   Lanes last_{-3e38F};
 };
 
@@ -105,6 +100,57 @@ static inline void prefetch(const Record& record) {
   for (std::size_t at = 0; at < sizeof(Record); at += 64) __builtin_prefetch(bytes + at);
 }
 
+// Where a cell begins and ends on the block's rays: on those that meet it, u_in < u_out.
+static inline void cross(const CellPlanes& p, const Pixels& pixels, const Lanes& nearest, const Lanes& farthest,
+                         Lanes& u_in, Lanes& u_out) {
+  const Lanes u0 = affine(pixels, p.a[0], p.b[0], p.c[0]);
+  const Lanes u1 = affine(pixels, p.a[1], p.b[1], p.c[1]);
+  const Lanes u2 = affine(pixels, p.a[2], p.b[2], p.c[2]);
+  const Lanes u3 = affine(pixels, p.a[3], p.b[3], p.c[3]);
+  const Lanes enters1(p.enters[0]);
+  const Lanes enters2(p.enters[1]);
+  u_in = max(max(nearest, u0), max(min(u1, enters1), min(u2, enters2)));
+  u_out = min(min(farthest, u3), min(max(u1, enters1), max(u2, enters2)));
+  if (p.eye_inside != 0) {
+    u_in = nearest;
+    u_out = min(u0, u_out);
+  }
+}
+
+// Notes the cells that meet a ray of the block, and their order. False when they overlap in a cycle.
+static bool cross_cells(const View& view, const BlockInput& block, const Pixels& rays, const BlockScratch& lists,
+                        std::uint32_t& met_cells) {
+  const Pixels pixels = rays;
+  const BlockScratch scratch = lists;
+  const Lanes nearest(view.nearest);
+  const Lanes farthest(view.farthest);
+  const std::uint32_t* const cells = block.cells;
+  const CellPlanes* const planes = block.planes;
+  const std::size_t cell_count = block.count;
+  Order order;
+  bool sorted = true;
+  std::uint32_t count = 0;
+  for (std::size_t n = 0; n < cell_count; ++n) {
+    const std::uint32_t record = cells[n];
+    if (n + prefetch_ahead < cell_count) prefetch(planes[cells[n + prefetch_ahead]]);
+    Lanes u_in;
+    Lanes u_out;
+    cross(planes[record], pixels, nearest, farthest, u_in, u_out);
+    const Mask lanes = u_in < u_out;
+    const unsigned met = bits(lanes);
+    // Which cells meet a ray follows no pattern that a branch could learn: every cell is noted, and those that meet
+    // none are overwritten by the next.
+    store(scratch.u_in + 16 * count, u_in);
+    store(scratch.u_out + 16 * count, u_out);
+    scratch.lanes[count] = static_cast<std::uint16_t>(met);
+    scratch.record[count] = record;
+    if (sorted) sorted = order.add(scratch, count, u_in, lanes);
+    count += (0U - met) >> 31U;
+  }
+  met_cells = count;
+  return sorted;
+}
+
 static std::uint64_t draw_block(const View& view, const CellOptics& optics, const BlockInput& block,
                                 const BlockScratch& scratch, float* rgba) {
   float columns[lane_count];
@@ -114,38 +160,13 @@ static std::uint64_t draw_block(const View& view, const CellOptics& optics, cons
     rows[i] = static_cast<float>(block.row + i / block_side);
   }
   const Pixels pixels{load(columns), load(rows)};
-  const Lanes nearest(view.nearest);
-  const Lanes farthest(view.farthest);
-
-  Order order(scratch);
-  bool cyclic = false;
   std::uint32_t count = 0;
-  for (std::size_t n = 0; n < block.count; ++n) {
-    const std::uint32_t record = block.cells[n];
-    const CellPlanes& p = block.planes[record];
-    if (n + prefetch_ahead < block.count) prefetch(block.planes[block.cells[n + prefetch_ahead]]);
-    Lanes u_in = max(nearest, affine(pixels, p.in_a[0], p.in_b[0], p.in_c[0]));
-    u_in = max(u_in, affine(pixels, p.in_a[1], p.in_b[1], p.in_c[1]));
-    u_in = max(u_in, affine(pixels, p.in_a[2], p.in_b[2], p.in_c[2]));
-    Lanes u_out = min(farthest, affine(pixels, p.out_a[0], p.out_b[0], p.out_c[0]));
-    u_out = min(u_out, affine(pixels, p.out_a[1], p.out_b[1], p.out_c[1]));
-    u_out = min(u_out, affine(pixels, p.out_a[2], p.out_b[2], p.out_c[2]));
-    if (p.out_count == 4) u_out = min(u_out, affine(pixels, p.out_a[3], p.out_b[3], p.out_c[3]));
-    const Mask lanes = u_in < u_out;
-    const unsigned met = bits(lanes);
-    if (met == 0) continue;
-    store(scratch.u_in + 16 * count, u_in);
-    store(scratch.u_out + 16 * count, u_out);
-    scratch.lanes[count] = static_cast<std::uint16_t>(met);
-    scratch.record[count] = record;
-    if (!cyclic) cyclic = !order.add(count, u_in, lanes);
-    ++count;
-  }
+  const bool sorted = cross_cells(view, block, pixels, scratch, count);
 
   const Integrator integrator(view, optics, block, pixels);
   Layers layers(optics, block);
   std::uint64_t steps = 0;
-  if (cyclic) {
+  if (!sorted) {
     for (std::uint32_t n = 0; n < count; ++n) steps += static_cast<unsigned>(__builtin_popcount(scratch.lanes[n]));
     compose_ray_by_ray(integrator, layers, scratch, count, rgba);
     return steps;

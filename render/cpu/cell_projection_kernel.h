@@ -19,6 +19,7 @@ namespace atomesh::cell_projection {
 inline constexpr int tile_side = 32;  // pixels
 inline constexpr int block_side = 4;  // pixels; a block's 16 pixels are the lanes of a register
 inline constexpr int blocks_per_side = tile_side / block_side;
+inline constexpr int blocks_per_tile = blocks_per_side * blocks_per_side;  // bits of a BlockSet
 inline constexpr int block_pixels = block_side * block_side;
 
 // Rays pass this much of a pixel right of the pixel's centre, and ray_lift of that above it: then no ray of a picture
@@ -40,13 +41,17 @@ struct View {
   double order_blend;  // 0: cells in order of their circumsphere's power (Delaunay); 1: of their centroid
 };
 
-// A cell's four faces as affine functions u(i, j) = a i + b j + c of the pixel within the tile, those the ray enters by
-// and those it leaves by, each list padded to four with repeats.
-struct CellPlanes {
-  float in_a[4], in_b[4], in_c[4];
-  float out_a[4], out_b[4], out_c[4];
-  std::uint32_t out_count;
+// A cell's four faces as affine functions u(i, j) = a i + b j + c of the pixel within the tile: first those the ray
+// enters by, then those it leaves by. The first is one it enters by and the last one it leaves by; `enters` says of the
+// second and the third. One cache line.
+struct alignas(64) CellPlanes {
+  float a[4], b[4], c[4];
+  float enters[2];           // +3e38 where the ray enters by the face, -3e38 where it leaves by it
+  std::uint32_t eye_inside;  // 1 where the ray enters by none of the four
 };
+
+// Blocks of a tile: bit b is block b, rows first.
+using BlockSet = std::uint64_t;
 
 // Up to four attributes of a cell (RGBA, or one scalar): value at pixel (i, j) and depth z is
 //   base(i, j) + (z - z_cell) · slope(i, j),  both affine in the pixel, clamped to the range of the cell's vertices.
@@ -98,6 +103,14 @@ struct SetupInput {
   int column, row;  // the tile's first pixel
 };
 
+struct SetupOutput {
+  CellPlanes* planes;
+  CellValues* values;
+  double* keys;      // ascending: front to back
+  BlockSet* blocks;  // that the cell may cover a pixel of; where there are none the other records are not filled
+  std::uint32_t* per_block;  // how many cells each of the tile's blocks has
+};
+
 // Lines of the lists that a block's cells pass through; sized by the driver for the longest list.
 struct BlockScratch {
   float* u_in;            // 16 per cell
@@ -122,9 +135,8 @@ struct BlockInput {
 
 struct Kernel {
   std::string_view name;
-  // Fills planes, values and keys (ascending: front to back) of each of the tile's cells. A cell that cannot be seen
-  // gets an infinite key.
-  void (*setup)(const View&, const SetupInput&, CellPlanes*, CellValues*, double* keys);
+  // Fills the records of each of the tile's cells.
+  void (*setup)(const View&, const SetupInput&, const SetupOutput&);
   // Premultiplied RGB and coverage of the block's 16 pixels, rows first. Returns the ray–cell steps composed.
   std::uint64_t (*draw_block)(const View&, const CellOptics&, const BlockInput&, const BlockScratch&, float* rgba);
 };

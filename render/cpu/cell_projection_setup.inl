@@ -10,7 +10,7 @@ typedef float F4 __attribute__((vector_size(16)));
 typedef std::int64_t L4 __attribute__((vector_size(32)));
 typedef std::int32_t I4 __attribute__((vector_size(16)));
 
-// For each set of faces (bit k: face k): their numbers in ascending order, the list filled up with the first.
+// For each set of faces (bit k: face k): its faces first, then the others.
 struct FaceLists {
   I4 list[16];
 };
@@ -20,10 +20,11 @@ constexpr FaceLists make_face_lists() {
   for (int set = 0; set < 16; ++set) {
     int found = 0;
     int faces[4] = {0, 0, 0, 0};
-    for (int k = 0; k < 4; ++k) {
-      if ((set >> k & 1) != 0) faces[found++] = k;
+    for (const int chosen : {1, 0}) {
+      for (int k = 0; k < 4; ++k) {
+        if ((set >> k & 1) == chosen) faces[found++] = k;
+      }
     }
-    for (int k = found; k < 4; ++k) faces[k] = faces[0];
     lists.list[set] = I4{faces[0], faces[1], faces[2], faces[3]};
   }
   return lists;
@@ -55,11 +56,95 @@ static inline SortedCorners sort_corners(const Index* corners) {
   return s;
 }
 
-static void setup(const View& view, const SetupInput& input, CellPlanes* planes, CellValues* values, double* keys) {
+// For each number of faces that a ray enters by: every pair of one of those and one that it leaves by.
+struct FacePairs {
+  I4 in;
+  I4 out;
+};
+constexpr FacePairs face_pairs[5] = {{I4{0, 0, 0, 0}, I4{0, 1, 2, 3}},
+                                     {I4{0, 0, 0, 0}, I4{1, 2, 3, 3}},
+                                     {I4{0, 0, 1, 1}, I4{2, 3, 2, 3}},
+                                     {I4{0, 1, 2, 2}, I4{3, 3, 3, 3}},
+                                     {I4{0, 1, 2, 3}, I4{0, 0, 0, 0}}};
+
+// Sixteen blocks of a tile, two rows of them, as lanes: which of the tile's blocks a cell may cover.
+class BlockTest {
+ public:
+  BlockTest() {
+    static_assert(blocks_per_side == 8 && lane_count == 16);
+    float column[lane_count];
+    for (int i = 0; i < lane_count; ++i) column[i] = static_cast<float>(i % blocks_per_side * block_side) + middle;
+    column_ = load(column);
+    for (int group = 0; group < groups; ++group) {
+      float row[lane_count];
+      for (int i = 0; i < lane_count; ++i) {
+        row[i] = static_cast<float>((2 * group + i / blocks_per_side) * block_side) + middle;
+      }
+      row_[group] = load(row);
+    }
+  }
+
+  // A ray meets the cell where each face it leaves by is farther than each it enters by. Along a face's outline that is
+  // a straight line, and a block on the wrong side of one of the lines is not met. Faces first those entered by, of
+  // which there are `entries`, 1 to 3. What rounding may hide is added, here and where the rays are intersected.
+  BlockSet blocks(const F4& a, const F4& b, const F4& c, int entries) {
+    const FacePairs& pairs = face_pairs[entries];
+    const F4 slope_a = __builtin_shuffle(a, pairs.out) - __builtin_shuffle(a, pairs.in);
+    const F4 slope_b = __builtin_shuffle(b, pairs.out) - __builtin_shuffle(b, pairs.in);
+    const F4 reach =
+        magnitude(a) * static_cast<float>(tile_side) + magnitude(b) * static_cast<float>(tile_side) + magnitude(c);
+    const F4 rounding = 1e-6F * (__builtin_shuffle(reach, pairs.out) + __builtin_shuffle(reach, pairs.in));
+    const F4 offset = __builtin_shuffle(c, pairs.out) - __builtin_shuffle(c, pairs.in) + rounding +
+                      middle * (magnitude(slope_a) + magnitude(slope_b));
+    Lanes along[4];
+    Lanes down[4];
+    for (int k = 0; k < 4; ++k) {
+      along[k] = multiply_add(Lanes(slope_a[k]), column_, Lanes(offset[k]));
+      down[k] = Lanes(slope_b[k]);
+    }
+    BlockSet set = 0;
+    for (int group = 0; group < groups; ++group) {
+      const Lanes least =
+          min(min(multiply_add(down[0], row_[group], along[0]), multiply_add(down[1], row_[group], along[1])),
+              min(multiply_add(down[2], row_[group], along[2]), multiply_add(down[3], row_[group], along[3])));
+      const Mask met = least > Lanes(0.0F);
+      count_[group] = count_[group] + select(met, Lanes(1.0F), Lanes(0.0F));
+      set |= static_cast<BlockSet>(bits(met)) << (lane_count * group);
+    }
+    return set;
+  }
+
+  BlockSet all_blocks() {
+    for (Lanes& count : count_) count = count + Lanes(1.0F);
+    return ~BlockSet{0};
+  }
+
+  // How many cells each block has been found for.
+  void counts(std::uint32_t* per_block) const {
+    for (int group = 0; group < groups; ++group) {
+      float count[lane_count];
+      store(count, count_[group]);
+      for (int i = 0; i < lane_count; ++i) per_block[lane_count * group + i] = static_cast<std::uint32_t>(count[i]);
+    }
+  }
+
+ private:
+  static constexpr int groups = blocks_per_tile / lane_count;
+  static constexpr float middle = 0.5F * (block_side - 1);  // of a block's pixels, from its first
+
+  static F4 magnitude(const F4& v) { return v < 0.0F ? -v : v; }
+
+  Lanes column_;
+  Lanes row_[groups];
+  Lanes count_[groups] = {Lanes(0.0F), Lanes(0.0F), Lanes(0.0F), Lanes(0.0F)};
+};
+
+static void setup(const View& view, const SetupInput& input, const SetupOutput& output) {
   const bool perspective = view.perspective;
   const double pixel = view.pixel;
   const double x0 = view.left + pixel * input.column;
   const double y0 = view.top - pixel * input.row;
+  BlockTest test;
   for (std::size_t n = 0; n < input.count; ++n) {
     const Index cell = input.cells[n];
     // Corners, then what they name, are asked for some cells ahead.
@@ -125,26 +210,29 @@ static void setup(const View& view, const SetupInput& input, CellPlanes* planes,
     const L4 enters = (d * outward < 0.0);
     const unsigned entries =
         static_cast<unsigned>((enters[0] & 1) | (enters[1] & 2) | (enters[2] & 4) | (enters[3] & 8));
-    CellPlanes& plane = planes[n];
-    CellValues& value = values[n];
+    if (entries == 15U) {  // turned over by rounding
+      output.blocks[n] = 0;
+      continue;
+    }
+    CellPlanes& plane = output.planes[n];
+    CellValues& value = output.values[n];
     const F4 fa = __builtin_convertvector(a, F4);
     const F4 fb = __builtin_convertvector(b, F4);
     const F4 fc = __builtin_convertvector(c, F4);
-    const I4 in = face_lists.list[entries];
-    const I4 out = face_lists.list[entries ^ 15U];
-    const F4 ina = entries != 0 ? __builtin_shuffle(fa, in) : F4{};
-    const F4 inb = entries != 0 ? __builtin_shuffle(fb, in) : F4{};
-    const F4 inc = entries != 0 ? __builtin_shuffle(fc, in) : view.nearest - F4{};
-    const F4 outa = __builtin_shuffle(fa, out);
-    const F4 outb = __builtin_shuffle(fb, out);
-    const F4 outc = __builtin_shuffle(fc, out);
-    ATOMESH_STORE4(plane.in_a, ina);
-    ATOMESH_STORE4(plane.in_b, inb);
-    ATOMESH_STORE4(plane.in_c, inc);
-    ATOMESH_STORE4(plane.out_a, outa);
-    ATOMESH_STORE4(plane.out_b, outb);
-    ATOMESH_STORE4(plane.out_c, outc);
-    plane.out_count = static_cast<std::uint32_t>(4 - __builtin_popcount(entries));
+    const I4 list = face_lists.list[entries];
+    const F4 plane_a = __builtin_shuffle(fa, list);
+    const F4 plane_b = __builtin_shuffle(fb, list);
+    const F4 plane_c = __builtin_shuffle(fc, list);
+    ATOMESH_STORE4(plane.a, plane_a);
+    ATOMESH_STORE4(plane.b, plane_b);
+    ATOMESH_STORE4(plane.c, plane_c);
+    const int entry_count = __builtin_popcount(entries);
+    const BlockSet met = entries == 0 ? test.all_blocks() : test.blocks(plane_a, plane_b, plane_c, entry_count);
+    output.blocks[n] = met;
+    if (met == 0) continue;
+    plane.enters[0] = entry_count >= 2 ? 3e38F : -3e38F;
+    plane.enters[1] = entry_count >= 3 ? 3e38F : -3e38F;
+    plane.eye_inside = entry_count == 0 ? 1 : 0;
 
     // Gradients of the barycentric coordinates: ±N / 6V. A cell too flat to have them gets the mean of its corners.
     const double mx = 0.25 * ATOMESH_SUM(x);
@@ -204,14 +292,13 @@ static void setup(const View& view, const SetupInput& input, CellPlanes* planes,
     const double qy = ATOMESH_SUM(squares * wy);
     const double qz = ATOMESH_SUM(squares * wz);
     const double keep = 1.0 - view.order_blend;
-    if (entries == 15U) {
-      keys[n] = __builtin_inf();
-    } else if (perspective) {
-      keys[n] = mx * mx + my * my + mz * mz + keep * (qx * mx + qy * my + qz * mz - 0.25 * size);
+    if (perspective) {
+      output.keys[n] = mx * mx + my * my + mz * mz + keep * (qx * mx + qy * my + qz * mz - 0.25 * size);
     } else {
-      keys[n] = mz + keep * 0.5 * qz;
+      output.keys[n] = mz + keep * 0.5 * qz;
     }
   }
+  test.counts(output.per_block);
 }
 
 }  // namespace atomesh::ATOMESH_ISA

@@ -1,19 +1,21 @@
 #include "render/cpu/cell_projection_tile.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 namespace atomesh::cell_projection {
 
-void Tile::resize(std::size_t count) {
+SetupOutput Tile::resize(std::size_t count) {
   count_ = count;
-  if (planes.size() >= count) return;
-  planes.resize(count);
-  values.resize(count);
-  keys.resize(count);
-  ranges.resize(count);
+  if (planes.size() < count) {
+    planes.resize(count);
+    values.resize(count);
+    keys.resize(count);
+    blocks.resize(count);
+  }
+  return {planes.data(), values.data(), keys.data(), blocks.data(), per_block_.data()};
 }
 
 // Keys are resolved to 2^-33 of their range: a radix sort of three digits.
@@ -23,7 +25,7 @@ void Tile::sort() {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (std::size_t n = 0; n < count_; ++n) {
-    if (std::isinf(keys[n])) continue;
+    if (blocks[n] == 0) continue;
     low = std::min(low, keys[n]);
     high = std::max(high, keys[n]);
   }
@@ -31,7 +33,7 @@ void Tile::sort() {
   std::array<std::array<std::uint32_t, 1 << digit>, 3> places{};
   sorted_.clear();
   for (std::size_t n = 0; n < count_; ++n) {
-    if (std::isinf(keys[n])) continue;
+    if (blocks[n] == 0) continue;
     const auto key = static_cast<std::uint64_t>((keys[n] - low) * scale);
     sorted_.push_back({key, static_cast<std::uint32_t>(n)});
     for (std::size_t pass = 0; pass < 3; ++pass) ++places[pass][key >> (digit * pass) & digit_mask];
@@ -49,25 +51,15 @@ void Tile::sort() {
 
 void Tile::list_blocks() {
   sort();
-  constexpr std::size_t blocks = std::size_t{blocks_per_side} * blocks_per_side;
-  std::array<std::uint32_t, blocks> fill{};
-  const auto for_blocks = [this](std::uint32_t cell, auto&& visit) {
-    const BlockRange range = ranges[cell];
-    for (unsigned row = range.first_row; row <= range.last_row; ++row) {
-      for (unsigned column = range.first_column; column <= range.last_column; ++column) {
-        visit(row * blocks_per_side + column);
-      }
+  begin_.assign(blocks_per_tile + 1, 0);
+  for (std::size_t b = 0; b < blocks_per_tile; ++b) begin_[b + 1] = begin_[b] + per_block_[b];
+  cells_.resize(begin_[blocks_per_tile]);
+  std::array<std::uint32_t, blocks_per_tile> fill{};
+  std::copy_n(begin_.begin(), blocks_per_tile, fill.begin());
+  for (const Entry& entry : sorted_) {
+    for (BlockSet rest = blocks[entry.cell]; rest != 0; rest &= rest - 1) {
+      cells_[fill[static_cast<std::size_t>(std::countr_zero(rest))]++] = entry.cell;
     }
-  };
-  for (const Entry& entry : sorted_) {
-    for_blocks(entry.cell, [&fill](std::size_t block) { ++fill[block]; });
-  }
-  begin_.assign(blocks + 1, 0);
-  for (std::size_t b = 0; b < blocks; ++b) begin_[b + 1] = begin_[b] + fill[b];
-  cells_.resize(begin_[blocks]);
-  std::copy_n(begin_.begin(), blocks, fill.begin());
-  for (const Entry& entry : sorted_) {
-    for_blocks(entry.cell, [&](std::size_t block) { cells_[fill[block]++] = entry.cell; });
   }
 }
 

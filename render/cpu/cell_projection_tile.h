@@ -2,6 +2,7 @@
 // surface.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -13,25 +14,20 @@
 
 namespace atomesh::cell_projection {
 
-// Blocks of a tile a cell may touch, ends included.
-struct BlockRange {
-  std::uint8_t first_column, last_column, first_row, last_row;
-};
-
 // What a thread needs to draw a tile; grows to the largest tile it has seen.
 class Tile {
  public:
   // Records for `count` cells, to be filled by Kernel::setup().
-  void resize(std::size_t count);
+  SetupOutput resize(std::size_t count);
 
   std::vector<CellPlanes> planes;
   std::vector<CellValues> values;
   std::vector<double> keys;
-  std::vector<BlockRange> ranges;
+  std::vector<BlockSet> blocks;
   TileLayers layers;
 
-  // Puts the cells in ascending order of their keys, equal keys by their place in the tile; infinite keys are left out.
-  // Then lists them, in this order, under the blocks of their ranges.
+  // Puts the cells in ascending order of their keys, equal keys by their place in the tile; those without blocks are
+  // left out. Then lists them, in this order, under their blocks.
   void list_blocks();
   std::span<const std::uint32_t> cells_of(int block) const {
     const auto b = static_cast<std::size_t>(block);
@@ -48,6 +44,7 @@ class Tile {
   void sort();
 
   std::size_t count_ = 0;
+  std::array<std::uint32_t, blocks_per_tile> per_block_{};
   std::vector<Entry> sorted_;
   std::vector<Entry> sorting_;
   std::vector<std::uint32_t> begin_;  // of each block in cells_
