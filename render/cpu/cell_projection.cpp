@@ -56,6 +56,8 @@ class Drawing {
     if (!layered) {
       intervals_ = MapIntervals(parameters.volume.color_map);
       optics_.map = intervals_.data();
+      optics_.map_grid = intervals_.grid();
+      optics_.map_intervals = static_cast<int>(intervals_.size());
     } else if (parameters.volume_surface.face_alpha > 0.0 && !scene.surface.empty()) {
       optics_.layer_alpha = static_cast<float>(parameters.volume_surface.face_alpha);
     }
@@ -125,7 +127,9 @@ class Drawing {
       progress.check();
       BlockInput block{};
       block.planes = tile.planes.data();
-      block.values = tile.values.data();
+      block.colors = tile.colors.data();
+      block.ranges = tile.ranges.data();
+      block.scalars = tile.scalars.data();
       block.cells = cells.data();
       block.count = cells.size();
       block.layers = layered ? tile.layers.hits() : nullptr;
@@ -147,8 +151,8 @@ class Drawing {
   }
 
   void set_up_tile(std::span<const Index> cells, int first_column, int first_row, Tile& tile) const {
-    const SetupOutput output = tile.resize(cells.size());
     const bool layered = scene_.mode == Mode::volume_surface;
+    const SetupOutput output = tile.resize(cells.size(), layered);
     SetupInput input{};
     input.vertices = vertices_.camera.data();
     input.corners = scene_.tetrahedra.front().data();
@@ -162,9 +166,9 @@ class Drawing {
     if (layered) return;
     for (std::size_t n = 0; n < cells.size(); ++n) {
       if (tile.blocks[n] == 0) continue;
-      CellValues& values = tile.values[n];
-      values.first_interval = intervals_.find(values.low[0]);
-      values.last_interval = intervals_.find(values.high[0]);
+      CellScalar& scalar = tile.scalars[n];
+      scalar.first_interval = intervals_.find(scalar.low);
+      scalar.last_interval = intervals_.find(scalar.high);
     }
   }
 

@@ -55,12 +55,13 @@ class Order {
 };
 
 // Every cell's light on its own, composed ray by ray in the ray's own order: right for any set of cells.
-static void compose_ray_by_ray(const Integrator& integrator, Layers& layers, const BlockScratch& scratch,
-                               std::uint32_t count, float* rgba) {
+template <class Integrator>
+static __attribute__((noinline)) void compose_ray_by_ray(const Integrator& integrator, Layers& layers,
+                                                         const BlockScratch& scratch, std::uint32_t count,
+                                                         float* rgba) {
   for (std::uint32_t n = 0; n < count; ++n) {
     Light light;
-    integrator.compose(scratch.record[n], load(scratch.u_in + 16 * n), load(scratch.u_out + 16 * n), scratch.lanes[n],
-                       light);
+    integrator.compose(scratch.record[n], load(scratch.u_in + 16 * n), load(scratch.u_out + 16 * n), light);
     store(scratch.light + 64 * n, light.red);
     store(scratch.light + 64 * n + 16, light.green);
     store(scratch.light + 64 * n + 32, light.blue);
@@ -118,8 +119,9 @@ static inline void cross(const CellPlanes& p, const Pixels& pixels, const Lanes&
 }
 
 // Notes the cells that meet a ray of the block, and their order. False when they overlap in a cycle.
-static bool cross_cells(const View& view, const BlockInput& block, const Pixels& rays, const BlockScratch& lists,
-                        std::uint32_t& met_cells) {
+static __attribute__((noinline, flatten)) bool cross_cells(const View& view, const BlockInput& block,
+                                                           const Pixels& rays, const BlockScratch& lists,
+                                                           std::uint32_t& met_cells) {
   const Pixels pixels = rays;
   const BlockScratch scratch = lists;
   const Lanes nearest(view.nearest);
@@ -151,8 +153,10 @@ static bool cross_cells(const View& view, const BlockInput& block, const Pixels&
   return sorted;
 }
 
-static std::uint64_t draw_block(const View& view, const CellOptics& optics, const BlockInput& block,
-                                const BlockScratch& scratch, float* rgba) {
+template <class Integrator>
+static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, const CellOptics& optics,
+                                                              const BlockInput& block, const BlockScratch& scratch,
+                                                              float* rgba) {
   float columns[lane_count];
   float rows[lane_count];
   for (int i = 0; i < lane_count; ++i) {
@@ -175,12 +179,12 @@ static std::uint64_t draw_block(const View& view, const CellOptics& optics, cons
   for (std::uint32_t n = 0; n < count; ++n) {
     const std::uint32_t next = scratch.order[n];
     const unsigned lanes = scratch.lanes[next];
-    if (n + prefetch_ahead < count) prefetch(block.values[scratch.record[scratch.order[n + prefetch_ahead]]]);
+    if (n + prefetch_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[n + prefetch_ahead]]));
     steps += static_cast<unsigned>(__builtin_popcount(lanes));
     const Lanes u_in = load(scratch.u_in + 16 * next);
     const Lanes u_out = load(scratch.u_out + 16 * next);
     layers.lay_before(u_in, u_out, lanes, light);
-    integrator.compose(scratch.record[next], u_in, u_out, lanes, light);
+    integrator.compose(scratch.record[next], u_in, u_out, light);
     if (!any(light.through > Lanes(opaque_enough))) break;
   }
   layers.lay_rest(light);
@@ -193,6 +197,12 @@ static std::uint64_t draw_block(const View& view, const CellOptics& optics, cons
     for (int k = 0; k < 4; ++k) rgba[4 * i + k] = channels[k][i];
   }
   return steps;
+}
+
+static std::uint64_t draw_block(const View& view, const CellOptics& optics, const BlockInput& block,
+                                const BlockScratch& scratch, float* rgba) {
+  return optics.map == nullptr ? draw_block_with<ColorIntegrator>(view, optics, block, scratch, rgba)
+                               : draw_block_with<ScalarIntegrator>(view, optics, block, scratch, rgba);
 }
 
 }  // namespace atomesh::ATOMESH_ISA

@@ -33,10 +33,85 @@ static inline void absorb(const Rgba& color, const Lanes& opacity, Light& light)
   light.through = light.through - taken;
 }
 
-class Integrator {
+static inline Rgba mix(const Rgba& a, const Rgba& b, const Lanes& t) {
+  Rgba color;
+  for (int k = 0; k < 4; ++k) color.channel[k] = multiply_add(t, b.channel[k] - a.channel[k], a.channel[k]);
+  return color;
+}
+
+static inline void add(const Rgba& near_end, const Rgba& far_end, const optics::Piece<Lanes>& piece, Light& light) {
+  const Lanes first = light.through * piece.opacity;
+  const Lanes second = light.through * piece.ramp;
+  Lanes* const gathered[3] = {&light.red, &light.green, &light.blue};
+  for (int k = 0; k < 3; ++k) {
+    *gathered[k] = multiply_add(first, near_end.channel[k],
+                                multiply_add(second, far_end.channel[k] - near_end.channel[k], *gathered[k]));
+  }
+  light.through = light.through - first;
+}
+
+// In pieces of optical depth 1, until the end or until nothing gets through: at most as many as a ray survives.
+static __attribute__((noinline)) void add_dense(const Rgba& near_end, const Rgba& far_end, const Lanes& density_near,
+                                                const Lanes& half_difference, Light& light) {
+  const Lanes one(1.0F);
+  const Lanes limit(optics::piece_limit);
+  const Lanes far_density = density_near + half_difference + half_difference;
+  Lanes u(0.0F);
+  Rgba here = near_end;
+  for (;;) {
+    const Mask active = (u < one) & (light.through > Lanes(opaque_enough));
+    if (!any(active)) return;
+    const Lanes density = multiply_add(half_difference + half_difference, u, density_near);
+    const Lanes rest = one - u;
+    const Mask cut = Lanes(0.5F) * rest * (density + far_density) > limit;
+    const Lanes root = sqrt(max(multiply_add(density, density, half_difference * Lanes(4.0F)), Lanes(0.0F)));
+    const Lanes reach = min(Lanes(2.0F) / max(density + root, Lanes(1e-30F)), rest);
+    const Lanes h = select(active, select(cut, reach, rest), Lanes(0.0F));
+    const Lanes next_u = select(active, select(cut & (reach < rest), u + reach, one), u);
+    const Rgba next = mix(near_end, far_end, next_u);
+    const Lanes bend = half_difference * h * h;
+    add(here, next, optics::integrate_piece(min(multiply_add(density, h, bend), limit), bend), light);
+    here = next;
+    u = next_u;
+  }
+}
+
+// As add_segment() by `samples` samples.
+static __attribute__((noinline)) void add_samples(const Rgba& near_end, const Rgba& far_end, const Lanes& length,
+                                                  int samples, Light& light) {
+  const float step = 1.0F / static_cast<float>(samples);
+  const Lanes step_length = length * Lanes(step);
+  for (int i = 0; i < samples; ++i) {
+    const Rgba color = mix(near_end, far_end, Lanes((static_cast<float>(i) + 0.5F) * step));
+    absorb(color, Lanes(1.0F) - exp_minus(color.channel[3] * step_length), light);
+  }
+}
+
+// RGBA linear from end to end; `length` is alpha_length times the way.
+static inline void add_segment(const Rgba& near_end, const Rgba& far_end, const Lanes& length, Light& light) {
+  const Lanes density_near = near_end.channel[3] * length;
+  const Lanes density_far = far_end.channel[3] * length;
+  const Lanes half_difference = (density_far - density_near) * Lanes(0.5F);
+  const Lanes mean = density_near + half_difference;
+  if (!any(mean > Lanes(optics::thin_limit))) {
+    add(near_end, far_end, optics::integrate_thin_piece(mean, half_difference), light);
+  } else if (!any(mean > Lanes(optics::piece_limit))) {
+    add(near_end, far_end, optics::integrate_piece(mean, half_difference), light);
+  } else {
+    Light gathered = light;  // a copy, so that `light` may stay in registers
+    add_dense(near_end, far_end, density_near, half_difference, gathered);
+    light = gathered;
+  }
+}
+
+// What every integrator knows of its block.
+class BlockOptics {
  public:
-  Integrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
-      : view_(view), optics_(optics), block_(block), pixels_(pixels) {
+  BlockOptics(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
+      : optics_(optics),
+        pixels_(pixels),
+        reference_(static_cast<float>(view.reference)),
+        perspective_(view.perspective) {
     const float pixel = static_cast<float>(view.pixel);
     const Lanes x = multiply_add(pixels.column, Lanes(pixel),
                                  Lanes(static_cast<float>(view.left + view.pixel * block.tile_column)));
@@ -44,48 +119,109 @@ class Integrator {
         multiply_add(pixels.row, Lanes(-pixel), Lanes(static_cast<float>(view.top - view.pixel * block.tile_row)));
     const Lanes length = view.perspective ? sqrt(multiply_add(x, x, multiply_add(y, y, Lanes(1.0F)))) : Lanes(1.0F);
     extinction_ = length * Lanes(optics.alpha_length);
-    reference_ = Lanes(static_cast<float>(view.reference));
   }
 
+ protected:
+  // Of a segment, u_in < u_out where there is one: its ends' depths from the cell's own, and alpha_length times the
+  // way, zero where there is none.
+  struct Way {
+    Lanes z_in, z_out, length;
+  };
+  Way way(const Lanes& u_in, const Lanes& u_out, float cell_depth) const {
+    const Lanes depth(cell_depth);
+    Way w;
+    w.z_in = relative_depth(min(u_in, u_out)) - depth;
+    w.z_out = relative_depth(u_out) - depth;
+    w.length = select(u_in < u_out, (w.z_out - w.z_in) * extinction_, Lanes(0.0F));
+    return w;
+  }
+
+  const CellOptics& optics_;
+  Pixels pixels_;
+
+ private:
+  Lanes relative_depth(const Lanes& u) const { return perspective_ ? reference_ * u * reciprocal(Lanes(1.0F) - u) : u; }
+
+  Lanes extinction_;  // alpha_length times the way per unit of depth
+  Lanes reference_;
+  bool perspective_;
+};
+
+// Cells whose vertices carry RGBA.
+class ColorIntegrator : public BlockOptics {
+ public:
+  ColorIntegrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
+      : BlockOptics(view, optics, block, pixels), colors_(block.colors), ranges_(block.ranges) {}
+
+  using Record = CellColors;
+  const CellColors& record(std::uint32_t number) const { return colors_[number]; }
+
   // Lays the segment of one cell behind what is in `light`.
-  void compose(std::uint32_t record, const Lanes& u_in, const Lanes& u_out, unsigned lanes, Light& light) const {
-    const CellValues& cell = block_.values[record];
-    const Mask mask = mask_of(lanes);
-    const Lanes depth(cell.depth);
-    const Lanes z_in = relative_depth(min(u_in, u_out)) - depth;
-    const Lanes z_out = relative_depth(u_out) - depth;
-    const Lanes length = select(mask, (z_out - z_in) * extinction_, Lanes(0.0F));
-    if (optics_.map == nullptr) {
-      Rgba near_end;
-      Rgba far_end;
-      for (int k = 0; k < 4; ++k) ends(cell, k, z_in, z_out, near_end.channel[k], far_end.channel[k]);
-      segment(near_end, far_end, length, light);
-      return;
+  void compose(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Light& light) const {
+    const CellColors& cell = colors_[number];
+    const Way w = way(u_in, u_out, cell.depth);
+    Rgba near_end;
+    Rgba far_end;
+    for (int k = 0; k < 4; ++k) {
+      const Lanes base = affine(pixels_, cell.base_a[k], cell.base_b[k], cell.base_c[k]);
+      const Lanes slope = affine(pixels_, cell.slope_a[k], cell.slope_b[k], cell.slope_c[k]);
+      near_end.channel[k] = multiply_add(w.z_in, slope, base);
+      far_end.channel[k] = multiply_add(w.z_out, slope, base);
     }
-    Lanes s_in;
-    Lanes s_out;
-    ends(cell, 0, z_in, z_out, s_in, s_out);
-    if (optics_.samples > 0) {
-      sample_map(cell, s_in, s_out, length, light);
-    } else if (cell.first_interval == cell.last_interval) {
-      const MapInterval& interval = optics_.map[cell.first_interval];
-      segment(mapped(interval, s_in), mapped(interval, s_out), length, light);
+    if (cell.wild != 0) {
+      const ColorRange& range = ranges_[number];
+      for (int k = 0; k < 4; ++k) {
+        near_end.channel[k] = clamp(near_end.channel[k], range.low[k], range.high[k]);
+        far_end.channel[k] = clamp(far_end.channel[k], range.low[k], range.high[k]);
+      }
+    }
+    if (optics_.samples == 0) {
+      add_segment(near_end, far_end, w.length, light);
     } else {
-      split_at_knots(cell, s_in, s_out, length, light);
+      Light gathered = light;
+      add_samples(near_end, far_end, w.length, optics_.samples, gathered);
+      light = gathered;
     }
   }
 
  private:
-  Lanes relative_depth(const Lanes& u) const { return view_.perspective ? reference_ * u / (Lanes(1.0F) - u) : u; }
+  const CellColors* colors_;
+  const ColorRange* ranges_;
+};
 
-  void ends(const CellValues& cell, int k, const Lanes& z_in, const Lanes& z_out, Lanes& near_end,
-            Lanes& far_end) const {
-    const Lanes base = affine(pixels_, cell.base_a[k], cell.base_b[k], cell.base_c[k]);
-    const Lanes slope = affine(pixels_, cell.slope_a[k], cell.slope_b[k], cell.slope_c[k]);
-    near_end = clamp(multiply_add(z_in, slope, base), cell.low[k], cell.high[k]);
-    far_end = clamp(multiply_add(z_out, slope, base), cell.low[k], cell.high[k]);
+// Cells whose vertices carry a scalar that the colour map turns into RGBA.
+class ScalarIntegrator : public BlockOptics {
+ public:
+  ScalarIntegrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
+      : BlockOptics(view, optics, block, pixels), scalars_(block.scalars) {}
+
+  using Record = CellScalar;
+  const CellScalar& record(std::uint32_t number) const { return scalars_[number]; }
+
+  void compose(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Light& light) const {
+    const CellScalar& cell = scalars_[number];
+    const Way w = way(u_in, u_out, cell.depth);
+    const Lanes base = affine(pixels_, cell.base_a, cell.base_b, cell.base_c);
+    const Lanes slope = affine(pixels_, cell.slope_a, cell.slope_b, cell.slope_c);
+    const Lanes s_in = clamp(multiply_add(w.z_in, slope, base), cell.low, cell.high);
+    const Lanes s_out = clamp(multiply_add(w.z_out, slope, base), cell.low, cell.high);
+    if (optics_.samples == 0 && cell.first_interval == cell.last_interval) {
+      const MapInterval& interval = optics_.map[cell.first_interval];
+      add_segment(mapped(interval, s_in), mapped(interval, s_out), w.length, light);
+      return;
+    }
+    Light gathered = light;
+    if (optics_.samples > 0) {
+      sample_map(cell, s_in, s_out, w.length, gathered);
+    } else if (any(w.length > Lanes(optics::piece_limit))) {
+      lay_intervals_each_way(cell, s_in, s_out, w.length, gathered);
+    } else {
+      lay_intervals(s_in, s_out, u_in < u_out, w.length, gathered);
+    }
+    light = gathered;
   }
 
+ private:
   static Rgba mapped(const MapInterval& interval, const Lanes& s) {
     const Lanes from_begin = s - Lanes(interval.begin);
     Rgba color;
@@ -95,75 +231,69 @@ class Integrator {
     return color;
   }
 
-  static Rgba mix(const Rgba& a, const Rgba& b, const Lanes& t) {
-    Rgba color;
-    for (int k = 0; k < 4; ++k) color.channel[k] = multiply_add(t, b.channel[k] - a.channel[k], a.channel[k]);
-    return color;
+  // MapIntervals::find().
+  int find(float scalar) const {
+    const float place = scalar * static_cast<float>(map_grid_size);
+    const float last = static_cast<float>(map_grid_size - 1);
+    int n = optics_.map_grid[static_cast<int>(place > 0.0F ? (place < last ? place : last) : 0.0F)];
+    while (n + 1 < optics_.map_intervals && scalar >= optics_.map[n + 1].begin) ++n;
+    return n;
   }
 
-  static void add(const Rgba& near_end, const Rgba& far_end, const optics::Piece<Lanes>& piece, Light& light) {
-    const Lanes first = light.through * piece.opacity;
-    const Lanes second = light.through * piece.ramp;
-    Lanes* const gathered[3] = {&light.red, &light.green, &light.blue};
-    for (int k = 0; k < 3; ++k) {
-      *gathered[k] = multiply_add(first, near_end.channel[k],
-                                  multiply_add(second, far_end.channel[k] - near_end.channel[k], *gathered[k]));
-    }
-    light.through = light.through - first;
-  }
-
-  // RGBA linear from end to end; `length` is alpha_length times the way.
-  void segment(const Rgba& near_end, const Rgba& far_end, const Lanes& length, Light& light) const {
-    if (optics_.samples > 0) {
-      const float step = 1.0F / static_cast<float>(optics_.samples);
-      const Lanes step_length = length * Lanes(step);
-      for (int i = 0; i < optics_.samples; ++i) {
-        const Rgba color = mix(near_end, far_end, Lanes((static_cast<float>(i) + 0.5F) * step));
-        absorb(color, Lanes(1.0F) - exp_minus(color.channel[3] * step_length), light);
-      }
-      return;
-    }
-    const Lanes density_near = near_end.channel[3] * length;
-    const Lanes density_far = far_end.channel[3] * length;
-    const Lanes half_difference = (density_far - density_near) * Lanes(0.5F);
-    const Lanes mean = density_near + half_difference;
-    if (!any(mean > Lanes(optics::piece_limit))) {
-      add(near_end, far_end, optics::integrate_piece(mean, half_difference), light);
-      return;
-    }
-    dense_segment(near_end, far_end, density_near, half_difference, light);
-  }
-
-  // In pieces of optical depth 1, until the end or until nothing gets through: at most as many as a ray survives.
-  static void dense_segment(const Rgba& near_end, const Rgba& far_end, const Lanes& density_near,
-                            const Lanes& half_difference, Light& light) {
+  // Segments of optical depth at most 1 that pass several intervals of the colour map, taken upwards whichever way the
+  // scalar goes: where it falls each interval's light is laid before that of those below, where it rises behind.
+  __attribute__((noinline)) void lay_intervals(const Lanes& s_in, const Lanes& s_out, const Mask& met,
+                                               const Lanes& length, Light& light) const {
+    const Lanes zero(0.0F);
     const Lanes one(1.0F);
-    const Lanes limit(optics::piece_limit);
-    const Lanes far_density = density_near + half_difference + half_difference;
-    Lanes u(0.0F);
-    Rgba here = near_end;
-    for (;;) {
-      const Mask active = (u < one) & (light.through > Lanes(opaque_enough));
-      if (!any(active)) return;
-      const Lanes density = multiply_add(half_difference + half_difference, u, density_near);
-      const Lanes rest = one - u;
-      const Mask cut = Lanes(0.5F) * rest * (density + far_density) > limit;
-      const Lanes root = sqrt(max(multiply_add(density, density, half_difference * Lanes(4.0F)), Lanes(0.0F)));
-      const Lanes reach = min(Lanes(2.0F) / max(density + root, Lanes(1e-30F)), rest);
-      const Lanes h = select(active, select(cut, reach, rest), Lanes(0.0F));
-      const Lanes next_u = select(active, select(cut & (reach < rest), u + reach, one), u);
-      const Rgba next = mix(near_end, far_end, next_u);
-      const Lanes bend = half_difference * h * h;
-      add(here, next, optics::integrate_piece(min(multiply_add(density, h, bend), limit), bend), light);
-      here = next;
-      u = next_u;
+    const Lanes bottom = min(s_in, s_out);
+    const Lanes top = max(s_in, s_out);
+    const int first = find(smallest(select(met, bottom, Lanes(3e38F))));
+    const int last = find(largest(select(met, top, Lanes(-3e38F))));
+    const Mask falls = s_out < s_in;
+    const Lanes way = select(falls, Lanes(-1.0F), one);
+    const Lanes rise = top - bottom;
+    const Mask level = rise == zero;
+    const Lanes per_rise = length / select(level, one, rise);
+    Light here;
+    for (int n = first; n <= last; ++n) {
+      const MapInterval& interval = optics_.map[n];
+      // Outermost intervals reach beyond, for scalars that rounding has put there.
+      const Lanes begin(n == first ? -3e38F : interval.begin);
+      const Lanes end(n == last ? 3e38F : interval.end);
+      const Lanes from = max(bottom, begin);
+      const Lanes to = min(top, end);
+      // A scalar that does not change lies in one interval for the whole way.
+      const Lanes part = select(level & (bottom < end), select(bottom < begin, zero, length), (to - from) * per_rise);
+      const Mask passed = part > zero;
+      if (!any(passed)) continue;
+      const Rgba low_end = mapped(interval, from);
+      const Rgba high_end = mapped(interval, to);
+      const Lanes used = select(passed, part, zero);
+      const Lanes half_difference = Lanes(0.5F) * used * (high_end.channel[3] - low_end.channel[3]);
+      const Lanes mean = multiply_add(used, low_end.channel[3], half_difference);
+      const optics::Piece<Lanes> piece = optics::integrate_piece(mean, half_difference * way);
+      const Lanes ramp = piece.ramp * way;
+      const Lanes before = select(falls, one, here.through);
+      const Lanes kept = select(falls, one - piece.opacity, one);
+      Lanes* const gathered[3] = {&here.red, &here.green, &here.blue};
+      for (int k = 0; k < 3; ++k) {
+        const Lanes near_color = select(falls, high_end.channel[k], low_end.channel[k]);
+        const Lanes color = multiply_add(piece.opacity, near_color, ramp * (high_end.channel[k] - low_end.channel[k]));
+        *gathered[k] = multiply_add(before, color, kept * *gathered[k]);
+      }
+      here.through = multiply_add(zero - piece.opacity, here.through, here.through);
     }
+    light.red = multiply_add(light.through, here.red, light.red);
+    light.green = multiply_add(light.through, here.green, light.green);
+    light.blue = multiply_add(light.through, here.blue, light.blue);
+    light.through = light.through * here.through;
   }
 
-  // Rays on which the scalar rises pass the colour map's intervals upwards, the others downwards; each interval that
-  // the cell touches is laid down once in each direction for the rays it concerns.
-  void split_at_knots(const CellValues& cell, const Lanes& s_in, const Lanes& s_out, const Lanes& length,
-                      Light& light) const {
+  // Of any density: rays on which the scalar rises pass the colour map's intervals upwards, the others downwards; each
+  // interval that the cell touches is laid down once in each direction for the rays it concerns.
+  __attribute__((noinline)) void lay_intervals_each_way(const CellScalar& cell, const Lanes& s_in, const Lanes& s_out,
+                                                        const Lanes& length, Light& light) const {
     const Lanes zero(0.0F);
     const Lanes one(1.0F);
     const Lanes rise = s_out - s_in;
@@ -176,9 +306,10 @@ class Integrator {
       const Lanes way = direction == 0 ? select(falls, zero, length) : select(falls, length, zero);
       if (!any(way > zero)) continue;
       for (int n = first; n <= last; ++n) {
-        const MapInterval& interval = optics_.map[direction == 0 ? n : last - (n - first)];
-        const Lanes begin(interval.begin);
-        const Lanes end(interval.end);
+        const int number = direction == 0 ? n : last - (n - first);
+        const MapInterval& interval = optics_.map[number];
+        const Lanes begin(number == first ? -3e38F : interval.begin);
+        const Lanes end(number == last ? 3e38F : interval.end);
         const Lanes from = direction == 0 ? begin : end;
         const Lanes to = direction == 0 ? end : begin;
         Lanes u_from = clamp((from - s_in) * per_rise, 0.0F, 1.0F);
@@ -190,13 +321,13 @@ class Integrator {
         if (!any(part > zero)) continue;
         const Lanes at_from = min(max(multiply_add(rise, u_from, s_in), begin), end);
         const Lanes at_to = min(max(multiply_add(rise, u_to, s_in), begin), end);
-        segment(mapped(interval, at_from), mapped(interval, at_to), part, light);
+        add_segment(mapped(interval, at_from), mapped(interval, at_to), part, light);
       }
     }
   }
 
-  void sample_map(const CellValues& cell, const Lanes& s_in, const Lanes& s_out, const Lanes& length,
-                  Light& light) const {
+  __attribute__((noinline)) void sample_map(const CellScalar& cell, const Lanes& s_in, const Lanes& s_out,
+                                            const Lanes& length, Light& light) const {
     const float step = 1.0F / static_cast<float>(optics_.samples);
     const Lanes step_length = length * Lanes(step);
     for (int i = 0; i < optics_.samples; ++i) {
@@ -212,12 +343,7 @@ class Integrator {
     }
   }
 
-  const View& view_;
-  const CellOptics& optics_;
-  const BlockInput& block_;
-  const Pixels& pixels_;
-  Lanes extinction_;  // alpha_length times the way per unit of depth
-  Lanes reference_;
+  const CellScalar* scalars_;
 };
 
 }  // namespace atomesh::ATOMESH_ISA

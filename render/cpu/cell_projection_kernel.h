@@ -30,6 +30,9 @@ inline constexpr double ray_lift = 0.15;
 // A block of pixels is finished when no ray of it lets more light through than this.
 inline constexpr float opaque_enough = 0x1p-18F;
 
+// MapIntervals::grid() has so many places for the scalars from 0 to 1.
+inline constexpr int map_grid_size = 256;
+
 // Constants of one picture.
 struct View {
   bool perspective;
@@ -53,13 +56,28 @@ struct alignas(64) CellPlanes {
 // Blocks of a tile: bit b is block b, rows first.
 using BlockSet = std::uint64_t;
 
-// Up to four attributes of a cell (RGBA, or one scalar): value at pixel (i, j) and depth z is
-//   base(i, j) + (z - z_cell) · slope(i, j),  both affine in the pixel, clamped to the range of the cell's vertices.
-struct CellValues {
+// An attribute of a cell: its value at pixel (i, j) and depth z is
+//   base(i, j) + (z - z_cell) · slope(i, j),  both affine in the pixel,
+// clamped to the range of the cell's vertices.
+
+// RGBA, clamped only where rounding may leave the range by more than 2e-6 (`wild`). Two cache lines, and one that is
+// seldom read.
+struct alignas(64) CellColors {
   float base_a[4], base_b[4], base_c[4];
   float slope_a[4], slope_b[4], slope_c[4];
+  float depth;  // z_cell - z_ref
+  std::uint32_t wild;
+};
+struct ColorRange {
   float low[4], high[4];
-  float depth;                   // z_cell - z_ref
+};
+
+// One scalar.
+struct alignas(64) CellScalar {
+  float base_a, base_b, base_c;
+  float slope_a, slope_b, slope_c;
+  float depth;  // z_cell - z_ref
+  float low, high;
   std::uint16_t first_interval;  // of the colour map, that the cell's scalars touch
   std::uint16_t last_interval;
 };
@@ -86,10 +104,12 @@ struct Shader {
 };
 
 struct CellOptics {
-  float alpha_length;      // 1/Å
-  int samples;             // per cell; 0 integrates exactly
-  const MapInterval* map;  // mode volume; nullptr where vertices carry RGBA
-  Shader layer;            // mode volume_surface; shade is nullptr elsewhere
+  float alpha_length;             // 1/Å
+  int samples;                    // per cell; 0 integrates exactly
+  const MapInterval* map;         // mode volume; nullptr where vertices carry RGBA
+  const std::uint16_t* map_grid;  // MapIntervals::grid()
+  int map_intervals;
+  Shader layer;  // mode volume_surface; shade is nullptr elsewhere
   float layer_alpha;
 };
 
@@ -105,9 +125,11 @@ struct SetupInput {
 
 struct SetupOutput {
   CellPlanes* planes;
-  CellValues* values;
-  double* keys;      // ascending: front to back
-  BlockSet* blocks;  // that the cell may cover a pixel of; where there are none the other records are not filled
+  CellColors* colors;  // these two where values are RGBA
+  ColorRange* ranges;
+  CellScalar* scalars;  // this where they are scalars, all but its intervals
+  double* keys;         // ascending: front to back
+  BlockSet* blocks;     // that the cell may cover a pixel of; where there are none the other records are not filled
   std::uint32_t* per_block;  // how many cells each of the tile's blocks has
 };
 
@@ -124,8 +146,10 @@ struct BlockScratch {
 
 struct BlockInput {
   const CellPlanes* planes;  // of the tile
-  const CellValues* values;
-  const std::uint32_t* cells;  // of the block: indices into planes and values, roughly front to back
+  const CellColors* colors;
+  const ColorRange* ranges;
+  const CellScalar* scalars;
+  const std::uint32_t* cells;  // of the block: indices into the tile's, roughly front to back
   std::size_t count;
   const LayerHit* layers;  // of the tile; those of the block's ray i: layer_begin[i] … layer_begin[i + 1] - 1,
   const std::uint32_t* layer_begin;  // nearest first. nullptr where no ray of the block has one

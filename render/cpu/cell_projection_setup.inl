@@ -56,6 +56,10 @@ static inline SortedCorners sort_corners(const Index* corners) {
   return s;
 }
 
+static inline F4 magnitude(const F4& v) {
+  return v < 0.0F ? -v : v;
+}
+
 // For each number of faces that a ray enters by: every pair of one of those and one that it leaves by.
 struct FacePairs {
   I4 in;
@@ -131,8 +135,6 @@ class BlockTest {
  private:
   static constexpr int groups = blocks_per_tile / lane_count;
   static constexpr float middle = 0.5F * (block_side - 1);  // of a block's pixels, from its first
-
-  static F4 magnitude(const F4& v) { return v < 0.0F ? -v : v; }
 
   Lanes column_;
   Lanes row_[groups];
@@ -215,7 +217,6 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
       continue;
     }
     CellPlanes& plane = output.planes[n];
-    CellValues& value = output.values[n];
     const F4 fa = __builtin_convertvector(a, F4);
     const F4 fb = __builtin_convertvector(b, F4);
     const F4 fc = __builtin_convertvector(c, F4);
@@ -276,15 +277,29 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
     const F4 slope_a = __builtin_convertvector(gx * (across * pixel), F4);
     const F4 slope_b = __builtin_convertvector(gy * (-across * pixel), F4);
     const F4 slope_c = __builtin_convertvector(gz + across * (gx * x0 + gy * y0), F4);
-    ATOMESH_STORE4(value.base_a, base_a);
-    ATOMESH_STORE4(value.base_b, base_b);
-    ATOMESH_STORE4(value.base_c, base_c);
-    ATOMESH_STORE4(value.slope_a, slope_a);
-    ATOMESH_STORE4(value.slope_b, slope_b);
-    ATOMESH_STORE4(value.slope_c, slope_c);
-    ATOMESH_STORE4(value.low, low);
-    ATOMESH_STORE4(value.high, high);
-    value.depth = static_cast<float>(mz - view.reference);
+    const float depth = static_cast<float>(mz - view.reference);
+    if (input.value_count == 4) {
+      // Where the rounding of the sums' largest terms is at most 2e-6 they are not clamped.
+      const float extent = static_cast<float>(__builtin_sqrt(size));
+      constexpr float side = tile_side;
+      const F4 reach = side * (magnitude(base_a) + magnitude(base_b)) + magnitude(base_c) +
+                       extent * (side * (magnitude(slope_a) + magnitude(slope_b)) + magnitude(slope_c));
+      const bool tame = reach[0] <= 32.0F && reach[1] <= 32.0F && reach[2] <= 32.0F && reach[3] <= 32.0F;
+      CellColors& cell_colors = output.colors[n];
+      ATOMESH_STORE4(cell_colors.base_a, base_a);
+      ATOMESH_STORE4(cell_colors.base_b, base_b);
+      ATOMESH_STORE4(cell_colors.base_c, base_c);
+      ATOMESH_STORE4(cell_colors.slope_a, slope_a);
+      ATOMESH_STORE4(cell_colors.slope_b, slope_b);
+      ATOMESH_STORE4(cell_colors.slope_c, slope_c);
+      cell_colors.depth = depth;
+      cell_colors.wild = tame ? 0 : 1;
+      ATOMESH_STORE4(output.ranges[n].low, low);
+      ATOMESH_STORE4(output.ranges[n].high, high);
+    } else {
+      output.scalars[n] = {base_a[0], base_b[0], base_c[0], slope_a[0], slope_b[0], slope_c[0],
+                           depth,     low[0],    high[0],   0,          0};
+    }
 
     // With L the linear function that equals |p - centroid|² at the corners, the power of the eye with respect to the
     // circumsphere is |eye - centroid|² - L(eye); seen from infinity cells sort by their circumcentre's depth.

@@ -7,15 +7,18 @@
 
 namespace atomesh::cell_projection {
 
-SetupOutput Tile::resize(std::size_t count) {
+SetupOutput Tile::resize(std::size_t count, bool colored) {
+  const auto grow = [](auto& list, std::size_t size) {
+    if (list.size() < size) list.resize(size);
+  };
   count_ = count;
-  if (planes.size() < count) {
-    planes.resize(count);
-    values.resize(count);
-    keys.resize(count);
-    blocks.resize(count);
-  }
-  return {planes.data(), values.data(), keys.data(), blocks.data(), per_block_.data()};
+  grow(planes, count);
+  grow(keys, count);
+  grow(blocks, count);
+  grow(colors, colored ? count : 0);
+  grow(ranges, colored ? count : 0);
+  grow(scalars, colored ? 0 : count);
+  return {planes.data(), colors.data(), ranges.data(), scalars.data(), keys.data(), blocks.data(), per_block_.data()};
 }
 
 // Keys are resolved to 2^-33 of their range: a radix sort of three digits.

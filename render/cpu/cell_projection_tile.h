@@ -17,11 +17,13 @@ namespace atomesh::cell_projection {
 // What a thread needs to draw a tile; grows to the largest tile it has seen.
 class Tile {
  public:
-  // Records for `count` cells, to be filled by Kernel::setup().
-  SetupOutput resize(std::size_t count);
+  // Records for `count` cells with RGBA or with a scalar, to be filled by Kernel::setup().
+  SetupOutput resize(std::size_t count, bool colored);
 
   std::vector<CellPlanes> planes;
-  std::vector<CellValues> values;
+  std::vector<CellColors> colors;
+  std::vector<ColorRange> ranges;
+  std::vector<CellScalar> scalars;
   std::vector<double> keys;
   std::vector<BlockSet> blocks;
   TileLayers layers;

@@ -182,7 +182,9 @@ inline unsigned bits(const Mask& mask) {
 inline Mask mask_of(unsigned bits) {
   Mask r;
   for (int i = 0; i < parts; ++i) {
-    for (int l = 0; l < width; ++l) r.m[i][l] = ((bits >> (i * width + l)) & 1U) != 0 ? -1 : 0;
+    NativeMask lane;
+    for (int l = 0; l < width; ++l) lane[l] = 1 << (i * width + l);
+    r.m[i] = (static_cast<std::int32_t>(bits) & lane) != 0;
   }
   return r;
 }
@@ -196,6 +198,35 @@ inline void store(float* p, const Lanes& a) {
 }
 
 #endif
+
+// 1 / a to a rounding or two, for a of ordinary size.
+#if defined(__AVX512F__)
+inline Lanes reciprocal(const Lanes& a) {
+  const Lanes rough = _mm512_rcp14_ps(a.v);
+  return multiply_add(rough, _mm512_fnmadd_ps(a.v, rough.v, _mm512_set1_ps(1.0F)), rough);
+}
+#else
+inline Lanes reciprocal(const Lanes& a) {
+  return Lanes(1.0F) / a;
+}
+#endif
+
+// Smallest and largest of the sixteen.
+inline float smallest(const Lanes& a) {
+#if defined(__AVX512F__)
+  return _mm512_reduce_min_ps(a.v);
+#else
+  float v[lane_count];
+  store(v, a);
+  for (int half = lane_count / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; ++i) v[i] = v[i] < v[i + half] ? v[i] : v[i + half];
+  }
+  return v[0];
+#endif
+}
+inline float largest(const Lanes& a) {
+  return -smallest(Lanes(0.0F) - a);
+}
 
 inline bool any(const Mask& mask) {
   return bits(mask) != 0;

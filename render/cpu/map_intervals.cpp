@@ -14,6 +14,11 @@ MapIntervals::MapIntervals(const ColorMap& map) {
       add(scalar(i), scalar(i + 1), entries[i].color, (entries[i + 1].color - entries[i].color) / width);
   }
   add(scalar(entries.size() - 1), 2.0F, entries.back().color, constant);
+  std::uint16_t n = 0;
+  for (int place = 0; place < map_grid_size; ++place) {
+    while (n + 1U < intervals_.size() && static_cast<float>(place) / map_grid_size >= intervals_[n + 1U].begin) ++n;
+    grid_.push_back(n);
+  }
 }
 
 void MapIntervals::add(float begin, float end, const Vec4f& first, const Vec4f& slope) {
@@ -25,12 +30,6 @@ void MapIntervals::add(float begin, float end, const Vec4f& first, const Vec4f& 
   intervals_.push_back(interval);
   const bool opaque = first.a > 0.0F || slope.a != 0.0F;
   opaque_before_.push_back(opaque_before_.back() + (opaque ? 1 : 0));
-}
-
-std::uint16_t MapIntervals::find(float scalar) const {
-  std::size_t n = 0;
-  while (n + 1 < intervals_.size() && scalar >= intervals_[n + 1].begin) ++n;
-  return static_cast<std::uint16_t>(n);
 }
 
 }  // namespace atomesh::cell_projection

@@ -1,6 +1,7 @@
 // The colour map as cell projection integrates it: linear intervals side by side that cover every scalar.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -15,8 +16,16 @@ class MapIntervals {
   explicit MapIntervals(const ColorMap& map);
 
   const MapInterval* data() const { return intervals_.data(); }
+  std::size_t size() const { return intervals_.size(); }
+  // For each n the interval of n / map_grid_size, from which find() looks on.
+  const std::uint16_t* grid() const { return grid_.data(); }
   // The interval a scalar lies in; of two that meet there, the upper.
-  std::uint16_t find(float scalar) const;
+  std::uint16_t find(float scalar) const {
+    const float place = std::clamp(scalar * map_grid_size, 0.0F, map_grid_size - 1.0F);
+    std::size_t n = grid_[static_cast<std::size_t>(place)];
+    while (n + 1 < intervals_.size() && scalar >= intervals_[n + 1].begin) ++n;
+    return static_cast<std::uint16_t>(n);
+  }
   // Whether no scalar from `low` to `high` has any opacity.
   bool transparent(float low, float high) const {
     return opaque_before_[std::size_t{find(high)} + 1] == opaque_before_[find(low)];
@@ -26,6 +35,7 @@ class MapIntervals {
   void add(float begin, float end, const Vec4f& first, const Vec4f& slope);
 
   std::vector<MapInterval> intervals_;
+  std::vector<std::uint16_t> grid_;
   std::vector<int> opaque_before_{0};  // how many intervals before each are not transparent throughout
 };
 

@@ -51,6 +51,21 @@ TEST(Segment, PieceIsWithinThreeTenMillionthsOfQuadrature) {
   EXPECT_LE(worst, 5e-7);  // the series' 3e-7 and the rounding of float
 }
 
+TEST(Segment, ThinPieceIsWithinATenMillionthOfQuadrature) {
+  double worst = 0.0;
+  for (int m = 0; m <= 20; ++m) {
+    for (int d = -10; d <= 10; ++d) {
+      const double mean = m / 20.0 * static_cast<double>(thin_limit);
+      const double half_difference = mean * d / 10.0;
+      const Exact exact = quadrature(mean - half_difference, mean + half_difference);
+      const Piece<float> piece = integrate_thin_piece(static_cast<float>(mean), static_cast<float>(half_difference));
+      worst = std::max({worst, std::abs(static_cast<double>(piece.opacity - (1 - exact.through))),
+                        std::abs(static_cast<double>(piece.ramp - (exact.psi - exact.through)))});
+    }
+  }
+  EXPECT_LE(worst, 1e-7);
+}
+
 TEST(Segment, AnyDensityIsWithinAMillionth) {
   for (const double near_density : {0.0, 1e-6, 1e-3, 0.3, 1.0, 2.5, 7.0, 30.0, 400.0}) {
     for (const double far_density : {0.0, 1e-6, 1e-3, 0.3, 1.0, 2.5, 7.0, 30.0, 400.0}) {
