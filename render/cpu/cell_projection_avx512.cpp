@@ -8,6 +8,7 @@
 
 // After those, each needs the one before it.
 // clang-format off
+#include "render/cpu/cell_projection_blocks.inl"
 #include "render/cpu/cell_projection_setup.inl"
 #include "render/cpu/cell_projection_integrate.inl"
 #include "render/cpu/cell_projection_layers.inl"

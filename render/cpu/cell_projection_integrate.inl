@@ -215,8 +215,10 @@ class ScalarIntegrator : public BlockOptics {
       sample_map(cell, s_in, s_out, w.length, gathered);
     } else if (any(w.length > Lanes(optics::piece_limit))) {
       lay_intervals_each_way(cell, s_in, s_out, w.length, gathered);
+    } else if (any(w.length > Lanes(optics::thin_limit))) {
+      lay_intervals<false>(s_in, s_out, u_in < u_out, w.length, gathered);
     } else {
-      lay_intervals(s_in, s_out, u_in < u_out, w.length, gathered);
+      lay_intervals<true>(s_in, s_out, u_in < u_out, w.length, gathered);
     }
     light = gathered;
   }
@@ -240,8 +242,10 @@ class ScalarIntegrator : public BlockOptics {
     return n;
   }
 
-  // Segments of optical depth at most 1 that pass several intervals of the colour map, taken upwards whichever way the
-  // scalar goes: where it falls each interval's light is laid before that of those below, where it rises behind.
+  // Segments of optical depth at most 1, or thin_limit, that pass several intervals of the colour map, taken upwards
+  // whichever way the scalar goes: where it falls each interval's light is laid before that of those below, where it
+  // rises behind.
+  template <bool thin>
   __attribute__((noinline)) void lay_intervals(const Lanes& s_in, const Lanes& s_out, const Mask& met,
                                                const Lanes& length, Light& light) const {
     const Lanes zero(0.0F);
@@ -272,7 +276,8 @@ class ScalarIntegrator : public BlockOptics {
       const Lanes used = select(passed, part, zero);
       const Lanes half_difference = Lanes(0.5F) * used * (high_end.channel[3] - low_end.channel[3]);
       const Lanes mean = multiply_add(used, low_end.channel[3], half_difference);
-      const optics::Piece<Lanes> piece = optics::integrate_piece(mean, half_difference * way);
+      const optics::Piece<Lanes> piece = thin ? optics::integrate_thin_piece(mean, half_difference * way)
+                                              : optics::integrate_piece(mean, half_difference * way);
       const Lanes ramp = piece.ramp * way;
       const Lanes before = select(falls, one, here.through);
       const Lanes kept = select(falls, one - piece.opacity, one);

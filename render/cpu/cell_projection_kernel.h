@@ -1,5 +1,5 @@
 // What the driver of cell projection and its kernels hand each other: plain structs, no classes. A kernel is one source
-// (cell_projection_setup.inl, _integrate.inl, _block.inl) compiled once per instruction set.
+// (cell_projection_blocks.inl, _setup.inl, _integrate.inl, _layers.inl, _block.inl) compiled once per instruction set.
 //
 // Depth along a ray is carried as u, affine in the pixel for every plane and growing with depth z:
 //   perspective u = 1 - z_ref / z  (planes project so that 1/z is affine),   parallel u = z - z_ref,

@@ -1,14 +1,43 @@
-// Set-up of a tile's cells: double in, float about the tile out. Four lanes of doubles carry a cell's four faces, then
-// its four attributes. Included by the kernels' sources after lanes.h.
+// Set-up of a tile's cells: double in, float about the tile out. A register's lanes are cells side by side, but where
+// vertices carry four values. Included by the kernels' sources after cell_projection_blocks.inl.
 
 namespace atomesh::ATOMESH_ISA {
 
-using namespace cell_projection;
-
+#if defined(__AVX512F__)
+inline constexpr int group_size = 8;
+#else
+inline constexpr int group_size = 4;
+#endif
+typedef double Doubles __attribute__((vector_size(8 * group_size)));
+typedef float Floats __attribute__((vector_size(4 * group_size)));
+typedef Index Indices __attribute__((vector_size(4 * group_size)));
+typedef std::int32_t Ints __attribute__((vector_size(4 * group_size)));
 typedef double D4 __attribute__((vector_size(32)));
-typedef float F4 __attribute__((vector_size(16)));
-typedef std::int64_t L4 __attribute__((vector_size(32)));
-typedef std::int32_t I4 __attribute__((vector_size(16)));
+
+// In one instruction, where the compiler's own conversion of vectors goes through memory.
+#if defined(__AVX__)
+static inline F4 to_floats(const D4& v) {
+  return _mm256_cvtpd_ps(v);
+}
+static inline D4 to_doubles(const F4& v) {
+  return _mm256_cvtps_pd(v);
+}
+#else
+static inline F4 to_floats(const D4& v) {
+  return __builtin_convertvector(v, F4);
+}
+static inline D4 to_doubles(const F4& v) {
+  return __builtin_convertvector(v, D4);
+}
+#endif
+#if defined(__AVX512F__)
+static inline Floats to_floats(const Doubles& v) {
+  return _mm512_cvtpd_ps(v);
+}
+static inline Doubles to_doubles(const Floats& v) {
+  return _mm512_cvtps_pd(v);
+}
+#endif
 
 // For each set of faces (bit k: face k): its faces first, then the others.
 struct FaceLists {
@@ -32,288 +61,297 @@ constexpr FaceLists make_face_lists() {
 
 constexpr FaceLists face_lists = make_face_lists();
 
-#define ATOMESH_SPLAT(x) ((x)-D4{})
-#define ATOMESH_SUM(v) ((v)[0] + (v)[1] + (v)[2] + (v)[3])
-#define ATOMESH_STORE4(target, v) __builtin_memcpy(target, &(v), 16)
-
-// Corners of a cell in ascending order of vertex index.
-struct SortedCorners {
-  Index vertex[4];
-  bool odd;  // the permutation's parity
+// So many cells of a tile at once. Corners stand in ascending order of vertex index, face k opposite corner k.
+struct CellGroup {
+  Indices vertex[4];
+  Ints odd;  // all bits where that order is an odd permutation of the cell's own
+  Doubles x[4], y[4], z[4];
+  Doubles nx[4], ny[4], nz[4];                                    // of the faces' planes, from their corners in order
+  Floats a[4], b[4], c[4];                                        // the planes as u(i, j)
+  F4 cell_a[group_size], cell_b[group_size], cell_c[group_size];  // the same, cell by cell
+  Ints entries;                                                   // bit k: the ray enters by face k
 };
 
-static inline SortedCorners sort_corners(const Index* corners) {
-  SortedCorners s{{corners[0], corners[1], corners[2], corners[3]}, false};
+static inline void transpose(const Floats* faces, F4* cells) {
+  for (int part = 0; part < group_size; part += 4) {
+    F4 row[4];
+    for (int k = 0; k < 4; ++k) {
+      __builtin_memcpy(&row[k], reinterpret_cast<const float*>(&faces[k]) + part, sizeof(F4));
+    }
+    const F4 low01 = __builtin_shuffle(row[0], row[1], I4{0, 4, 1, 5});
+    const F4 low23 = __builtin_shuffle(row[2], row[3], I4{0, 4, 1, 5});
+    const F4 high01 = __builtin_shuffle(row[0], row[1], I4{2, 6, 3, 7});
+    const F4 high23 = __builtin_shuffle(row[2], row[3], I4{2, 6, 3, 7});
+    cells[part] = __builtin_shuffle(low01, low23, I4{0, 1, 4, 5});
+    cells[part + 1] = __builtin_shuffle(low01, low23, I4{2, 3, 6, 7});
+    cells[part + 2] = __builtin_shuffle(high01, high23, I4{0, 1, 4, 5});
+    cells[part + 3] = __builtin_shuffle(high01, high23, I4{2, 3, 6, 7});
+  }
+}
+
+// Cells input.cells[first] and on; the tile's last one fills the lanes that are left.
+static inline void load_group(const SetupInput& input, std::size_t first, CellGroup& g) {
+  for (int l = 0; l < group_size; ++l) {
+    const std::size_t at = first + static_cast<std::size_t>(l);
+    const Index cell = input.cells[at < input.count ? at : input.count - 1];
+    const Index* corners = input.corners + 4 * static_cast<std::size_t>(cell);
+    for (int k = 0; k < 4; ++k) g.vertex[k][l] = corners[k];
+  }
+  g.odd = Ints{};
   constexpr int network[5][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
   for (const auto& [i, j] : network) {
-    const bool swap = s.vertex[j] < s.vertex[i];
-    const Index vi = s.vertex[i];
-    const Index vj = s.vertex[j];
-    s.vertex[i] = swap ? vj : vi;
-    s.vertex[j] = swap ? vi : vj;
-    s.odd ^= swap;
+    const Indices vi = g.vertex[i];
+    const Indices vj = g.vertex[j];
+    const Ints swap = vj < vi;
+    g.vertex[i] = swap ? vj : vi;
+    g.vertex[j] = swap ? vi : vj;
+    g.odd ^= swap;
   }
-  return s;
-}
-
-static inline F4 magnitude(const F4& v) {
-  return v < 0.0F ? -v : v;
-}
-
-// For each number of faces that a ray enters by: every pair of one of those and one that it leaves by.
-struct FacePairs {
-  I4 in;
-  I4 out;
-};
-constexpr FacePairs face_pairs[5] = {{I4{0, 0, 0, 0}, I4{0, 1, 2, 3}},
-                                     {I4{0, 0, 0, 0}, I4{1, 2, 3, 3}},
-                                     {I4{0, 0, 1, 1}, I4{2, 3, 2, 3}},
-                                     {I4{0, 1, 2, 2}, I4{3, 3, 3, 3}},
-                                     {I4{0, 1, 2, 3}, I4{0, 0, 0, 0}}};
-
-// Sixteen blocks of a tile, two rows of them, as lanes: which of the tile's blocks a cell may cover.
-class BlockTest {
- public:
-  BlockTest() {
-    static_assert(blocks_per_side == 8 && lane_count == 16);
-    float column[lane_count];
-    for (int i = 0; i < lane_count; ++i) column[i] = static_cast<float>(i % blocks_per_side * block_side) + middle;
-    column_ = load(column);
-    for (int group = 0; group < groups; ++group) {
-      float row[lane_count];
-      for (int i = 0; i < lane_count; ++i) {
-        row[i] = static_cast<float>((2 * group + i / blocks_per_side) * block_side) + middle;
-      }
-      row_[group] = load(row);
+  for (int k = 0; k < 4; ++k) {
+    for (int l = 0; l < group_size; ++l) {
+      const double* p = input.vertices + 3 * static_cast<std::size_t>(g.vertex[k][l]);
+      g.x[k][l] = p[0];
+      g.y[k][l] = p[1];
+      g.z[k][l] = p[2];
     }
   }
+}
 
-  // A ray meets the cell where each face it leaves by is farther than each it enters by. Along a face's outline that is
-  // a straight line, and a block on the wrong side of one of the lines is not met. Faces first those entered by, of
-  // which there are `entries`, 1 to 3. What rounding may hide is added, here and where the rays are intersected.
-  BlockSet blocks(const F4& a, const F4& b, const F4& c, int entries) {
-    const FacePairs& pairs = face_pairs[entries];
-    const F4 slope_a = __builtin_shuffle(a, pairs.out) - __builtin_shuffle(a, pairs.in);
-    const F4 slope_b = __builtin_shuffle(b, pairs.out) - __builtin_shuffle(b, pairs.in);
-    const F4 reach =
-        magnitude(a) * static_cast<float>(tile_side) + magnitude(b) * static_cast<float>(tile_side) + magnitude(c);
-    const F4 rounding = 1e-6F * (__builtin_shuffle(reach, pairs.out) + __builtin_shuffle(reach, pairs.in));
-    const F4 offset = __builtin_shuffle(c, pairs.out) - __builtin_shuffle(c, pairs.in) + rounding +
-                      middle * (magnitude(slope_a) + magnitude(slope_b));
-    Lanes along[4];
-    Lanes down[4];
+// Corners, then what they name, are asked for some cells ahead.
+static inline void prefetch_groups(const SetupInput& input, std::size_t first) {
+  for (std::size_t near = first + 8; near < first + 8 + group_size && near < input.count; ++near) {
+    if (near + 8 < input.count) {
+      __builtin_prefetch(input.corners + 4 * static_cast<std::size_t>(input.cells[near + 8]));
+    }
+    const Index* ahead = input.corners + 4 * static_cast<std::size_t>(input.cells[near]);
     for (int k = 0; k < 4; ++k) {
-      along[k] = multiply_add(Lanes(slope_a[k]), column_, Lanes(offset[k]));
-      down[k] = Lanes(slope_b[k]);
-    }
-    BlockSet set = 0;
-    for (int group = 0; group < groups; ++group) {
-      const Lanes least =
-          min(min(multiply_add(down[0], row_[group], along[0]), multiply_add(down[1], row_[group], along[1])),
-              min(multiply_add(down[2], row_[group], along[2]), multiply_add(down[3], row_[group], along[3])));
-      const Mask met = least > Lanes(0.0F);
-      count_[group] = count_[group] + select(met, Lanes(1.0F), Lanes(0.0F));
-      set |= static_cast<BlockSet>(bits(met)) << (lane_count * group);
-    }
-    return set;
-  }
-
-  BlockSet all_blocks() {
-    for (Lanes& count : count_) count = count + Lanes(1.0F);
-    return ~BlockSet{0};
-  }
-
-  // How many cells each block has been found for.
-  void counts(std::uint32_t* per_block) const {
-    for (int group = 0; group < groups; ++group) {
-      float count[lane_count];
-      store(count, count_[group]);
-      for (int i = 0; i < lane_count; ++i) per_block[lane_count * group + i] = static_cast<std::uint32_t>(count[i]);
+      __builtin_prefetch(input.vertices + 3 * static_cast<std::size_t>(ahead[k]));
+      __builtin_prefetch(input.values + static_cast<std::size_t>(input.value_count) * ahead[k]);
     }
   }
+}
 
- private:
-  static constexpr int groups = blocks_per_tile / lane_count;
-  static constexpr float middle = 0.5F * (block_side - 1);  // of a block's pixels, from its first
+// The plane of face k. Every face goes through the same instructions, whichever number it has in its cell, so that its
+// two cells get the same bits: hence a function that is not inlined.
+static __attribute__((noinline)) void find_planes(const View& view, double x0, double y0, int k, CellGroup& g) {
+  constexpr int corners[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+  const Doubles zero{};
+  const bool perspective = view.perspective;
+  const Doubles ax = g.x[corners[k][0]];
+  const Doubles ay = g.y[corners[k][0]];
+  const Doubles az = g.z[corners[k][0]];
+  const Doubles bx = g.x[corners[k][1]] - ax;
+  const Doubles by = g.y[corners[k][1]] - ay;
+  const Doubles bz = g.z[corners[k][1]] - az;
+  const Doubles cx = g.x[corners[k][2]] - ax;
+  const Doubles cy = g.y[corners[k][2]] - ay;
+  const Doubles cz = g.z[corners[k][2]] - az;
+  const Doubles nx = by * cz - bz * cy;
+  const Doubles ny = bz * cx - bx * cz;
+  const Doubles nz = bx * cy - by * cx;
+  const Doubles constant = nx * ax + ny * ay + nz * az;
+  g.nx[k] = nx;
+  g.ny[k] = ny;
+  g.nz[k] = nz;
 
-  Lanes column_;
-  Lanes row_[groups];
-  Lanes count_[groups] = {Lanes(0.0F), Lanes(0.0F), Lanes(0.0F), Lanes(0.0F)};
+  // u(x, y) = (m - k (Nx x + Ny y)) / d + offset. A face that holds the eye (or is parallel to the rays) has d = 0: a d
+  // of next to nothing then puts it before or behind everything, the same for both its cells.
+  Doubles d = perspective ? constant : nz;
+  const Doubles tiny = zero + 1e-200;
+  d = (d < tiny && d > -tiny) ? tiny : d;
+  const double scale_u = perspective ? view.reference : 1.0;
+  const Doubles m = perspective ? -view.reference * nz : constant;
+  const Doubles inverse = 1.0 / d;
+  Doubles a = -scale_u * view.pixel * nx * inverse;
+  Doubles b = scale_u * view.pixel * ny * inverse;
+  Doubles c = (m - scale_u * (x0 * nx + y0 * ny)) * inverse + (perspective ? 1.0 : -view.reference);
+  const Doubles abs_a = a < zero ? -a : a;
+  const Doubles abs_b = b < zero ? -b : b;
+  const Doubles abs_c = c < zero ? -c : c;
+  Doubles largest = abs_a > abs_b ? abs_a : abs_b;
+  largest = largest > abs_c ? largest : abs_c;
+  const Doubles limit = zero + 1e30;
+  const Doubles scale = largest > limit ? limit / largest : zero + 1.0;
+  g.a[k] = to_floats(a * scale);
+  g.b[k] = to_floats(b * scale);
+  g.c[k] = to_floats(c * scale);
+
+  // The ray enters by the faces whose outward normal looks back at it. Which way is outward follows from the order of
+  // the corners alone, so that the cells at a face never disagree.
+  const Ints inward = g.odd ^ (k % 2 == 0 ? -1 : 0);
+  const Ints back = __builtin_convertvector(d < zero, Ints);
+  g.entries |= (back ^ inward) & (1 << k);
+}
+
+// Cell l's planes as the kernel wants them, and its blocks.
+static inline BlockSet write_planes(const CellGroup& g, int l, const BlockTest& test, CellPlanes& plane) {
+  const auto entries = static_cast<unsigned>(g.entries[l]);
+  if (entries == 15U) return 0;  // turned over by rounding
+  const I4 list = face_lists.list[entries];
+  const F4 a = __builtin_shuffle(g.cell_a[l], list);
+  const F4 b = __builtin_shuffle(g.cell_b[l], list);
+  const F4 c = __builtin_shuffle(g.cell_c[l], list);
+  const int entry_count = __builtin_popcount(entries);
+  store4(plane.a, a);
+  store4(plane.b, b);
+  store4(plane.c, c);
+  plane.enters[0] = entry_count >= 2 ? 3e38F : -3e38F;
+  plane.enters[1] = entry_count >= 3 ? 3e38F : -3e38F;
+  plane.eye_inside = entry_count == 0 ? 1 : 0;
+  return entries == 0 ? ~BlockSet{0} : test.blocks(a, b, c, entry_count);
+}
+
+// What values at the corners become values along the rays by.
+struct CellSlopes {
+  Doubles wx[4], wy[4], wz[4];  // gradients of the barycentric coordinates
+  Doubles mx, my, mz;           // centroid
+  Doubles extent;               // no corner is farther from it
 };
+
+// Cell l of vertices with RGBA.
+static inline void write_colors(const View& view, const SetupInput& input, double x0, double y0, const CellGroup& g,
+                                const CellSlopes& s, int l, CellColors& colors, ColorRange& range) {
+  F4 low{};
+  F4 high{};
+  D4 gx{};
+  D4 gy{};
+  D4 gz{};
+  D4 mean{};
+  for (int v = 0; v < 4; ++v) {
+    F4 here;
+    __builtin_memcpy(&here, input.values + 4 * static_cast<std::size_t>(g.vertex[v][l]), sizeof here);
+    low = v == 0 ? here : (here < low ? here : low);
+    high = v == 0 ? here : (here > high ? here : high);
+    const D4 exact = to_doubles(here);
+    mean += 0.25 * exact;
+    gx += exact * s.wx[v][l];
+    gy += exact * s.wy[v][l];
+    gz += exact * s.wz[v][l];
+  }
+  const double across = view.perspective ? view.pixel : 0.0;
+  const double h = view.perspective ? s.mz[l] : 1.0;
+  const F4 base_a = to_floats(gx * (h * view.pixel));
+  const F4 base_b = to_floats(gy * (-h * view.pixel));
+  const F4 base_c = to_floats(mean + gx * (h * x0 - s.mx[l]) + gy * (h * y0 - s.my[l]));
+  const F4 slope_a = to_floats(gx * across);
+  const F4 slope_b = to_floats(gy * -across);
+  const F4 slope_c = to_floats(view.perspective ? gz + gx * x0 + gy * y0 : gz);
+  store4(colors.base_a, base_a);
+  store4(colors.base_b, base_b);
+  store4(colors.base_c, base_c);
+  store4(colors.slope_a, slope_a);
+  store4(colors.slope_b, slope_b);
+  store4(colors.slope_c, slope_c);
+  colors.depth = static_cast<float>(s.mz[l] - view.reference);
+  // Where the rounding of the largest terms is at most 2e-6 they are not clamped.
+  constexpr float side = tile_side;
+  const F4 reach =
+      side * (magnitude(base_a) + magnitude(base_b)) + magnitude(base_c) +
+      static_cast<float>(s.extent[l]) * (side * (magnitude(slope_a) + magnitude(slope_b)) + magnitude(slope_c));
+  const bool tame = reach[0] <= 32.0F && reach[1] <= 32.0F && reach[2] <= 32.0F && reach[3] <= 32.0F;
+  colors.wild = tame ? 0 : 1;
+  store4(range.low, low);
+  store4(range.high, high);
+}
+
+// Cells of vertices with a scalar, as many as `count` of the group.
+static inline void write_scalars(const View& view, const SetupInput& input, double x0, double y0, const CellGroup& g,
+                                 const CellSlopes& s, int count, CellScalar* scalars) {
+  Floats low{};
+  Floats high{};
+  Doubles gx{};
+  Doubles gy{};
+  Doubles gz{};
+  Doubles mean{};
+  for (int v = 0; v < 4; ++v) {
+    Floats here;
+    for (int l = 0; l < group_size; ++l) here[l] = input.values[g.vertex[v][l]];
+    low = v == 0 ? here : (here < low ? here : low);
+    high = v == 0 ? here : (here > high ? here : high);
+    const Doubles exact = to_doubles(here);
+    mean += 0.25 * exact;
+    gx += exact * s.wx[v];
+    gy += exact * s.wy[v];
+    gz += exact * s.wz[v];
+  }
+  const double across = view.perspective ? view.pixel : 0.0;
+  const Doubles h = view.perspective ? s.mz : Doubles{} + 1.0;
+  const Floats base_a = to_floats(gx * (h * view.pixel));
+  const Floats base_b = to_floats(gy * (h * -view.pixel));
+  const Floats base_c = to_floats(mean + gx * (h * x0 - s.mx) + gy * (h * y0 - s.my));
+  const Floats slope_a = to_floats(gx * across);
+  const Floats slope_b = to_floats(gy * -across);
+  const Floats slope_c = to_floats(view.perspective ? gz + gx * x0 + gy * y0 : gz);
+  const Floats depth = to_floats(s.mz - view.reference);
+  for (int l = 0; l < count; ++l) {
+    scalars[l] = {base_a[l], base_b[l], base_c[l], slope_a[l], slope_b[l], slope_c[l], depth[l], low[l], high[l], 0, 0};
+  }
+}
 
 static void setup(const View& view, const SetupInput& input, const SetupOutput& output) {
-  const bool perspective = view.perspective;
-  const double pixel = view.pixel;
-  const double x0 = view.left + pixel * input.column;
-  const double y0 = view.top - pixel * input.row;
-  BlockTest test;
-  for (std::size_t n = 0; n < input.count; ++n) {
-    const Index cell = input.cells[n];
-    // Corners, then what they name, are asked for some cells ahead.
-    if (n + 16 < input.count) __builtin_prefetch(input.corners + 4 * static_cast<std::size_t>(input.cells[n + 16]));
-    if (n + 8 < input.count) {
-      const Index* ahead = input.corners + 4 * static_cast<std::size_t>(input.cells[n + 8]);
-      for (int k = 0; k < 4; ++k) {
-        __builtin_prefetch(input.vertices + 3 * static_cast<std::size_t>(ahead[k]));
-        __builtin_prefetch(input.values + static_cast<std::size_t>(input.value_count) * ahead[k]);
-      }
-    }
-    const SortedCorners corners = sort_corners(input.corners + 4 * static_cast<std::size_t>(cell));
-    const double* p[4];
-    for (int k = 0; k < 4; ++k) p[k] = input.vertices + 3 * static_cast<std::size_t>(corners.vertex[k]);
-    const D4 x{p[0][0], p[1][0], p[2][0], p[3][0]};
-    const D4 y{p[0][1], p[1][1], p[2][1], p[3][1]};
-    const D4 z{p[0][2], p[1][2], p[2][2], p[3][2]};
-
-    // Planes N·p = c of the faces opposite each corner, from their corners a < b < c.
-    const L4 to_a{1, 0, 0, 0};
-    const L4 to_b{2, 2, 1, 1};
-    const L4 to_c{3, 3, 3, 2};
-    const D4 ax = __builtin_shuffle(x, to_a);
-    const D4 ay = __builtin_shuffle(y, to_a);
-    const D4 az = __builtin_shuffle(z, to_a);
-    const D4 bx = __builtin_shuffle(x, to_b) - ax;
-    const D4 by = __builtin_shuffle(y, to_b) - ay;
-    const D4 bz = __builtin_shuffle(z, to_b) - az;
-    const D4 cx = __builtin_shuffle(x, to_c) - ax;
-    const D4 cy = __builtin_shuffle(y, to_c) - ay;
-    const D4 cz = __builtin_shuffle(z, to_c) - az;
-    const D4 nx = by * cz - bz * cy;
-    const D4 ny = bz * cx - bx * cz;
-    const D4 nz = bx * cy - by * cx;
-    const D4 constant = nx * ax + ny * ay + nz * az;
-
-    // u(x, y) = (m - k (Nx x + Ny y)) / d + offset. A face that holds the eye (or is parallel to the rays) has d = 0: a
-    // d of next to nothing then puts it before or behind everything, the same for both its cells.
-    D4 d = perspective ? constant : nz;
-    const D4 tiny = ATOMESH_SPLAT(1e-200);
-    d = (d < tiny && d > -tiny) ? tiny : d;
-    const double k = perspective ? view.reference : 1.0;
-    const D4 m = perspective ? -view.reference * nz : constant;
-    const D4 inverse = 1.0 / d;
-    D4 a = -k * pixel * nx * inverse;
-    D4 b = k * pixel * ny * inverse;
-    D4 c = (m - k * (x0 * nx + y0 * ny)) * inverse + (perspective ? 1.0 : -view.reference);
-    const D4 abs_a = a < 0.0 ? -a : a;
-    const D4 abs_b = b < 0.0 ? -b : b;
-    const D4 abs_c = c < 0.0 ? -c : c;
-    D4 largest = abs_a > abs_b ? abs_a : abs_b;
-    largest = largest > abs_c ? largest : abs_c;
-    const D4 limit = ATOMESH_SPLAT(1e30);
-    const D4 scale = largest > limit ? limit / largest : ATOMESH_SPLAT(1.0);
-    a *= scale;
-    b *= scale;
-    c *= scale;
-
-    // The ray enters by the faces whose outward normal looks back at it. Which way is outward follows from the order of
-    // the corners alone, so that the cells at a face never disagree.
-    const double turn = corners.odd ? -1.0 : 1.0;
-    const D4 outward = D4{-1.0, 1.0, -1.0, 1.0} * turn;
-    const L4 enters = (d * outward < 0.0);
-    const unsigned entries =
-        static_cast<unsigned>((enters[0] & 1) | (enters[1] & 2) | (enters[2] & 4) | (enters[3] & 8));
-    if (entries == 15U) {  // turned over by rounding
-      output.blocks[n] = 0;
-      continue;
-    }
-    CellPlanes& plane = output.planes[n];
-    const F4 fa = __builtin_convertvector(a, F4);
-    const F4 fb = __builtin_convertvector(b, F4);
-    const F4 fc = __builtin_convertvector(c, F4);
-    const I4 list = face_lists.list[entries];
-    const F4 plane_a = __builtin_shuffle(fa, list);
-    const F4 plane_b = __builtin_shuffle(fb, list);
-    const F4 plane_c = __builtin_shuffle(fc, list);
-    ATOMESH_STORE4(plane.a, plane_a);
-    ATOMESH_STORE4(plane.b, plane_b);
-    ATOMESH_STORE4(plane.c, plane_c);
-    const int entry_count = __builtin_popcount(entries);
-    const BlockSet met = entries == 0 ? test.all_blocks() : test.blocks(plane_a, plane_b, plane_c, entry_count);
-    output.blocks[n] = met;
-    if (met == 0) continue;
-    plane.enters[0] = entry_count >= 2 ? 3e38F : -3e38F;
-    plane.enters[1] = entry_count >= 3 ? 3e38F : -3e38F;
-    plane.eye_inside = entry_count == 0 ? 1 : 0;
+  const double x0 = view.left + view.pixel * input.column;
+  const double y0 = view.top - view.pixel * input.row;
+  const double keep = 1.0 - view.order_blend;
+  const BlockTest test;
+  CellGroup g;
+  CellSlopes s;
+  for (std::size_t first = 0; first < input.count; first += group_size) {
+    prefetch_groups(input, first);
+    load_group(input, first, g);
+    g.entries = Ints{};
+    for (int k = 0; k < 4; ++k) find_planes(view, x0, y0, k, g);
+    transpose(g.a, g.cell_a);
+    transpose(g.b, g.cell_b);
+    transpose(g.c, g.cell_c);
 
     // Gradients of the barycentric coordinates: ±N / 6V. A cell too flat to have them gets the mean of its corners.
-    const double mx = 0.25 * ATOMESH_SUM(x);
-    const double my = 0.25 * ATOMESH_SUM(y);
-    const double mz = 0.25 * ATOMESH_SUM(z);
-    const D4 squares = (x - mx) * (x - mx) + (y - my) * (y - my) + (z - mz) * (z - mz);
-    const double size = ATOMESH_SUM(squares);
-    const double volume6 = nx[3] * (x[3] - x[0]) + ny[3] * (y[3] - y[0]) + nz[3] * (z[3] - z[0]);
-    const bool flat = volume6 * volume6 <= 1e-26 * size * size * size;
-    const D4 over_volume = D4{-1.0, 1.0, -1.0, 1.0} * (flat ? 0.0 : 1.0 / volume6);
-    const D4 wx = nx * over_volume;
-    const D4 wy = ny * over_volume;
-    const D4 wz = nz * over_volume;
-    D4 gx{};
-    D4 gy{};
-    D4 gz{};
-    D4 mean{};
-    F4 low{};
-    F4 high{};
-    for (int v = 0; v < 4; ++v) {
-      F4 here{};
-      const float* source = input.values + static_cast<std::size_t>(input.value_count) * corners.vertex[v];
-      if (input.value_count == 4) {
-        __builtin_memcpy(&here, source, 16);
-      } else {
-        here[0] = *source;
-      }
-      low = v == 0 ? here : (here < low ? here : low);
-      high = v == 0 ? here : (here > high ? here : high);
-      const D4 exact = __builtin_convertvector(here, D4);
-      mean += 0.25 * exact;
-      gx += exact * wx[v];
-      gy += exact * wy[v];
-      gz += exact * wz[v];
+    s.mx = 0.25 * (g.x[0] + g.x[1] + g.x[2] + g.x[3]);
+    s.my = 0.25 * (g.y[0] + g.y[1] + g.y[2] + g.y[3]);
+    s.mz = 0.25 * (g.z[0] + g.z[1] + g.z[2] + g.z[3]);
+    const Doubles volume6 = g.nx[3] * (g.x[3] - g.x[0]) + g.ny[3] * (g.y[3] - g.y[0]) + g.nz[3] * (g.z[3] - g.z[0]);
+    Doubles squares[4];
+    Doubles size{};
+    for (int k = 0; k < 4; ++k) {
+      const Doubles dx = g.x[k] - s.mx;
+      const Doubles dy = g.y[k] - s.my;
+      const Doubles dz = g.z[k] - s.mz;
+      squares[k] = dx * dx + dy * dy + dz * dz;
+      size += squares[k];
     }
-    const double h = perspective ? mz : 1.0;
-    const F4 base_a = __builtin_convertvector(gx * (h * pixel), F4);
-    const F4 base_b = __builtin_convertvector(gy * (-h * pixel), F4);
-    const F4 base_c = __builtin_convertvector(mean + gx * (h * x0 - mx) + gy * (h * y0 - my), F4);
-    const double across = perspective ? 1.0 : 0.0;
-    const F4 slope_a = __builtin_convertvector(gx * (across * pixel), F4);
-    const F4 slope_b = __builtin_convertvector(gy * (-across * pixel), F4);
-    const F4 slope_c = __builtin_convertvector(gz + across * (gx * x0 + gy * y0), F4);
-    const float depth = static_cast<float>(mz - view.reference);
-    if (input.value_count == 4) {
-      // Where the rounding of the sums' largest terms is at most 2e-6 they are not clamped.
-      const float extent = static_cast<float>(__builtin_sqrt(size));
-      constexpr float side = tile_side;
-      const F4 reach = side * (magnitude(base_a) + magnitude(base_b)) + magnitude(base_c) +
-                       extent * (side * (magnitude(slope_a) + magnitude(slope_b)) + magnitude(slope_c));
-      const bool tame = reach[0] <= 32.0F && reach[1] <= 32.0F && reach[2] <= 32.0F && reach[3] <= 32.0F;
-      CellColors& cell_colors = output.colors[n];
-      ATOMESH_STORE4(cell_colors.base_a, base_a);
-      ATOMESH_STORE4(cell_colors.base_b, base_b);
-      ATOMESH_STORE4(cell_colors.base_c, base_c);
-      ATOMESH_STORE4(cell_colors.slope_a, slope_a);
-      ATOMESH_STORE4(cell_colors.slope_b, slope_b);
-      ATOMESH_STORE4(cell_colors.slope_c, slope_c);
-      cell_colors.depth = depth;
-      cell_colors.wild = tame ? 0 : 1;
-      ATOMESH_STORE4(output.ranges[n].low, low);
-      ATOMESH_STORE4(output.ranges[n].high, high);
-    } else {
-      output.scalars[n] = {base_a[0], base_b[0], base_c[0], slope_a[0], slope_b[0], slope_c[0],
-                           depth,     low[0],    high[0],   0,          0};
-    }
-
+    const Doubles over_volume = volume6 * volume6 <= 1e-26 * size * size * size ? Doubles{} : 1.0 / volume6;
     // With L the linear function that equals |p - centroid|² at the corners, the power of the eye with respect to the
     // circumsphere is |eye - centroid|² - L(eye); seen from infinity cells sort by their circumcentre's depth.
-    const double qx = ATOMESH_SUM(squares * wx);
-    const double qy = ATOMESH_SUM(squares * wy);
-    const double qz = ATOMESH_SUM(squares * wz);
-    const double keep = 1.0 - view.order_blend;
-    if (perspective) {
-      output.keys[n] = mx * mx + my * my + mz * mz + keep * (qx * mx + qy * my + qz * mz - 0.25 * size);
-    } else {
-      output.keys[n] = mz + keep * 0.5 * qz;
+    Doubles qx{};
+    Doubles qy{};
+    Doubles qz{};
+    for (int k = 0; k < 4; ++k) {
+      const Doubles weight = k % 2 == 0 ? -over_volume : over_volume;
+      s.wx[k] = g.nx[k] * weight;
+      s.wy[k] = g.ny[k] * weight;
+      s.wz[k] = g.nz[k] * weight;
+      qx += squares[k] * s.wx[k];
+      qy += squares[k] * s.wy[k];
+      qz += squares[k] * s.wz[k];
     }
+    const Doubles keys = view.perspective ? s.mx * s.mx + s.my * s.my + s.mz * s.mz +
+                                                keep * (qx * s.mx + qy * s.my + qz * s.mz - 0.25 * size)
+                                          : s.mz + keep * 0.5 * qz;
+    s.extent = size;
+    for (int l = 0; l < group_size; ++l) s.extent[l] = __builtin_sqrt(size[l]);
+
+    const std::size_t rest = input.count - first;
+    const int count = rest < group_size ? static_cast<int>(rest) : group_size;
+    for (int l = 0; l < count; ++l) {
+      const std::size_t n = first + static_cast<std::size_t>(l);
+      output.keys[n] = keys[l];
+      output.blocks[n] = write_planes(g, l, test, output.planes[n]);
+      if (input.value_count == 4 && output.blocks[n] != 0) {
+        write_colors(view, input, x0, y0, g, s, l, output.colors[n], output.ranges[n]);
+      }
+    }
+    if (input.value_count == 1) write_scalars(view, input, x0, y0, g, s, count, output.scalars + first);
   }
-  test.counts(output.per_block);
+  count_blocks(output.blocks, input.count, output.per_block);
 }
 
 }  // namespace atomesh::ATOMESH_ISA
