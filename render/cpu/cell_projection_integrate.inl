@@ -50,9 +50,12 @@ static inline void add(const Rgba& near_end, const Rgba& far_end, const optics::
   light.through = light.through - first;
 }
 
+// What is seldom needed is not inlined, and takes and returns values: so the light of the common case may stay in
+// registers.
+
 // In pieces of optical depth 1, until the end or until nothing gets through: at most as many as a ray survives.
-static __attribute__((noinline)) void add_dense(const Rgba& near_end, const Rgba& far_end, const Lanes& density_near,
-                                                const Lanes& half_difference, Light& light) {
+static __attribute__((noinline)) Light add_dense(Rgba near_end, Rgba far_end, Lanes density_near,
+                                                 Lanes half_difference, Light light) {
   const Lanes one(1.0F);
   const Lanes limit(optics::piece_limit);
   const Lanes far_density = density_near + half_difference + half_difference;
@@ -60,7 +63,7 @@ static __attribute__((noinline)) void add_dense(const Rgba& near_end, const Rgba
   Rgba here = near_end;
   for (;;) {
     const Mask active = (u < one) & (light.through > Lanes(opaque_enough));
-    if (!any(active)) return;
+    if (!any(active)) return light;
     const Lanes density = multiply_add(half_difference + half_difference, u, density_near);
     const Lanes rest = one - u;
     const Mask cut = Lanes(0.5F) * rest * (density + far_density) > limit;
@@ -77,14 +80,15 @@ static __attribute__((noinline)) void add_dense(const Rgba& near_end, const Rgba
 }
 
 // As add_segment() by `samples` samples.
-static __attribute__((noinline)) void add_samples(const Rgba& near_end, const Rgba& far_end, const Lanes& length,
-                                                  int samples, Light& light) {
+static __attribute__((noinline)) Light add_samples(Rgba near_end, Rgba far_end, Lanes length, int samples,
+                                                   Light light) {
   const float step = 1.0F / static_cast<float>(samples);
   const Lanes step_length = length * Lanes(step);
   for (int i = 0; i < samples; ++i) {
     const Rgba color = mix(near_end, far_end, Lanes((static_cast<float>(i) + 0.5F) * step));
     absorb(color, Lanes(1.0F) - exp_minus(color.channel[3] * step_length), light);
   }
+  return light;
 }
 
 // RGBA linear from end to end; `length` is alpha_length times the way.
@@ -98,9 +102,7 @@ static inline void add_segment(const Rgba& near_end, const Rgba& far_end, const 
   } else if (!any(mean > Lanes(optics::piece_limit))) {
     add(near_end, far_end, optics::integrate_piece(mean, half_difference), light);
   } else {
-    Light gathered = light;  // a copy, so that `light` may stay in registers
-    add_dense(near_end, far_end, density_near, half_difference, gathered);
-    light = gathered;
+    light = add_dense(near_end, far_end, density_near, half_difference, light);
   }
 }
 
@@ -178,9 +180,7 @@ class ColorIntegrator : public BlockOptics {
     if (optics_.samples == 0) {
       add_segment(near_end, far_end, w.length, light);
     } else {
-      Light gathered = light;
-      add_samples(near_end, far_end, w.length, optics_.samples, gathered);
-      light = gathered;
+      light = add_samples(near_end, far_end, w.length, optics_.samples, light);
     }
   }
 

@@ -31,11 +31,11 @@ class Layers {
   static constexpr float none = 3e38F;
 
   void lay_up_to(const Lanes& twice_u, unsigned lanes, Light& light) {
-    if ((lanes & bits(load(next_) < twice_u)) != 0) lay_due(twice_u, lanes, light);
+    if ((lanes & bits(load(next_) < twice_u)) != 0) light = lay_due(twice_u, lanes, light);
   }
 
   // Shaded one ray at a time: a ray has few.
-  __attribute__((noinline)) void lay_due(const Lanes& twice_u, unsigned lanes, Light& light) {
+  __attribute__((noinline)) Light lay_due(Lanes twice_u, unsigned lanes, Light light) {
     const unsigned open = lanes & bits(light.through > Lanes(opaque_enough));
     while (const unsigned due = open & bits(load(next_) < twice_u)) {
       alignas(64) float rgb[3][lane_count] = {};
@@ -49,6 +49,7 @@ class Layers {
       }
       absorb({{load(rgb[0]), load(rgb[1]), load(rgb[2]), Lanes(0.0F)}}, load(opacity), light);
     }
+    return light;
   }
 
   void lay_up_to(float twice_u, int lane, float* light) {
