@@ -54,8 +54,8 @@ static inline void add(const Rgba& near_end, const Rgba& far_end, const optics::
 // registers.
 
 // In pieces of optical depth 1, until the end or until nothing gets through: at most as many as a ray survives.
-static __attribute__((noinline)) Light add_dense(Rgba near_end, Rgba far_end, Lanes density_near,
-                                                 Lanes half_difference, Light light) {
+static __attribute__((noinline, flatten)) Light add_dense(Rgba near_end, Rgba far_end, Lanes density_near,
+                                                          Lanes half_difference, Light light) {
   const Lanes one(1.0F);
   const Lanes limit(optics::piece_limit);
   const Lanes far_density = density_near + half_difference + half_difference;
@@ -80,8 +80,8 @@ static __attribute__((noinline)) Light add_dense(Rgba near_end, Rgba far_end, La
 }
 
 // As add_segment() by `samples` samples.
-static __attribute__((noinline)) Light add_samples(Rgba near_end, Rgba far_end, Lanes length, int samples,
-                                                   Light light) {
+static __attribute__((noinline, flatten)) Light add_samples(Rgba near_end, Rgba far_end, Lanes length, int samples,
+                                                            Light light) {
   const float step = 1.0F / static_cast<float>(samples);
   const Lanes step_length = length * Lanes(step);
   for (int i = 0; i < samples; ++i) {
@@ -206,21 +206,16 @@ class ScalarIntegrator : public BlockOptics {
     const Lanes s_in = clamp(multiply_add(w.z_in, slope, base), cell.low, cell.high);
     const Lanes s_out = clamp(multiply_add(w.z_out, slope, base), cell.low, cell.high);
     if (optics_.samples == 0 && cell.first_interval == cell.last_interval) {
-      const MapInterval& interval = optics_.map[cell.first_interval];
-      add_segment(mapped(interval, s_in), mapped(interval, s_out), w.length, light);
-      return;
-    }
-    Light gathered = light;
-    if (optics_.samples > 0) {
-      sample_map(cell, s_in, s_out, w.length, gathered);
+      add_mapped(optics_.map[cell.first_interval], s_in, s_out, w.length, light);
+    } else if (optics_.samples > 0) {
+      light = sample_map(cell, s_in, s_out, w.length, light);
     } else if (any(w.length > Lanes(optics::piece_limit))) {
-      lay_intervals_each_way(cell, s_in, s_out, w.length, gathered);
+      light = lay_intervals_each_way(cell, s_in, s_out, w.length, light);
     } else if (any(w.length > Lanes(optics::thin_limit))) {
-      lay_intervals<false>(s_in, s_out, u_in < u_out, w.length, gathered);
+      light = lay_intervals<false>(s_in, s_out, u_in < u_out, w.length, light);
     } else {
-      lay_intervals<true>(s_in, s_out, u_in < u_out, w.length, gathered);
+      light = lay_intervals<true>(s_in, s_out, u_in < u_out, w.length, light);
     }
-    light = gathered;
   }
 
  private:
@@ -242,63 +237,90 @@ class ScalarIntegrator : public BlockOptics {
     return n;
   }
 
+  // A segment within one interval.
+  static void add_mapped(const MapInterval& interval, const Lanes& s_in, const Lanes& s_out, const Lanes& length,
+                         Light& light) {
+    const Lanes near_place = s_in - Lanes(interval.begin);
+    const Lanes far_place = s_out - Lanes(interval.begin);
+    const Lanes first_opacity(interval.first[3]);
+    const Lanes opacity_slope(interval.slope[3]);
+    const Lanes density_near = multiply_add(near_place, opacity_slope, first_opacity) * length;
+    const Lanes density_far = multiply_add(far_place, opacity_slope, first_opacity) * length;
+    const Lanes half_difference = (density_far - density_near) * Lanes(0.5F);
+    const Lanes mean = density_near + half_difference;
+    if (any(mean > Lanes(optics::thin_limit))) {
+      add_segment(mapped(interval, s_in), mapped(interval, s_out), length, light);
+      return;
+    }
+    const optics::Piece<Lanes> piece = optics::integrate_thin_piece(mean, half_difference);
+    const Lanes taken = light.through * piece.opacity;
+    const Lanes place = multiply_add(taken, near_place, light.through * piece.ramp * (far_place - near_place));
+    lay(interval, taken, place, light);
+    light.through = light.through - taken;
+  }
+
+  // Adds light of which `taken` has the colour of the interval's beginning, changed as far as `place` says.
+  static void lay(const MapInterval& interval, const Lanes& taken, const Lanes& place, Light& light) {
+    Lanes* const gathered[3] = {&light.red, &light.green, &light.blue};
+    for (int k = 0; k < 3; ++k) {
+      *gathered[k] =
+          multiply_add(taken, Lanes(interval.first[k]), multiply_add(place, Lanes(interval.slope[k]), *gathered[k]));
+    }
+  }
+
   // Segments of optical depth at most 1, or thin_limit, that pass several intervals of the colour map, taken upwards
   // whichever way the scalar goes: where it falls each interval's light is laid before that of those below, where it
   // rises behind.
   template <bool thin>
-  __attribute__((noinline)) void lay_intervals(const Lanes& s_in, const Lanes& s_out, const Mask& met,
-                                               const Lanes& length, Light& light) const {
+  __attribute__((noinline, flatten)) Light lay_intervals(Lanes s_in, Lanes s_out, Mask met, Lanes length,
+                                                         Light light) const {
     const Lanes zero(0.0F);
     const Lanes one(1.0F);
     const Lanes bottom = min(s_in, s_out);
-    const Lanes top = max(s_in, s_out);
+    // A scalar that does not change gets a range to spread over: a rounding's worth.
+    const Lanes top = max(max(s_in, s_out), bottom + Lanes(1e-7F));
     const int first = find(smallest(select(met, bottom, Lanes(3e38F))));
     const int last = find(largest(select(met, top, Lanes(-3e38F))));
     const Mask falls = s_out < s_in;
-    const Lanes way = select(falls, Lanes(-1.0F), one);
-    const Lanes rise = top - bottom;
-    const Mask level = rise == zero;
-    const Lanes per_rise = length / select(level, one, rise);
+    const Lanes half_way = select(falls, Lanes(-0.5F), Lanes(0.5F));
+    const Lanes per_rise = length / (top - bottom);
     Light here;
     for (int n = first; n <= last; ++n) {
       const MapInterval& interval = optics_.map[n];
-      // Outermost intervals reach beyond, for scalars that rounding has put there.
-      const Lanes begin(n == first ? -3e38F : interval.begin);
-      const Lanes end(n == last ? 3e38F : interval.end);
+      const Lanes begin(interval.begin);
       const Lanes from = max(bottom, begin);
-      const Lanes to = min(top, end);
-      // A scalar that does not change lies in one interval for the whole way.
-      const Lanes part = select(level & (bottom < end), select(bottom < begin, zero, length), (to - from) * per_rise);
-      const Mask passed = part > zero;
-      if (!any(passed)) continue;
-      const Rgba low_end = mapped(interval, from);
-      const Rgba high_end = mapped(interval, to);
-      const Lanes used = select(passed, part, zero);
-      const Lanes half_difference = Lanes(0.5F) * used * (high_end.channel[3] - low_end.channel[3]);
-      const Lanes mean = multiply_add(used, low_end.channel[3], half_difference);
-      const optics::Piece<Lanes> piece = thin ? optics::integrate_thin_piece(mean, half_difference * way)
-                                              : optics::integrate_piece(mean, half_difference * way);
-      const Lanes ramp = piece.ramp * way;
+      const Lanes to = min(top, Lanes(interval.end));
+      const Lanes part = max(to - from, zero) * per_rise;
+      const Lanes low_place = from - begin;
+      const Lanes high_place = to - begin;
+      const Lanes density_low = part * multiply_add(low_place, Lanes(interval.slope[3]), Lanes(interval.first[3]));
+      const Lanes density_high = part * multiply_add(high_place, Lanes(interval.slope[3]), Lanes(interval.first[3]));
+      const Lanes mean = Lanes(0.5F) * (density_low + density_high);
+      const Lanes half_difference = half_way * (density_high - density_low);
+      const optics::Piece<Lanes> piece =
+          thin ? optics::integrate_thin_piece(mean, half_difference) : optics::integrate_piece(mean, half_difference);
+      const Lanes low_weight = select(falls, piece.ramp, piece.opacity - piece.ramp);
+      const Lanes high_weight = piece.opacity - low_weight;
       const Lanes before = select(falls, one, here.through);
       const Lanes kept = select(falls, one - piece.opacity, one);
-      Lanes* const gathered[3] = {&here.red, &here.green, &here.blue};
-      for (int k = 0; k < 3; ++k) {
-        const Lanes near_color = select(falls, high_end.channel[k], low_end.channel[k]);
-        const Lanes color = multiply_add(piece.opacity, near_color, ramp * (high_end.channel[k] - low_end.channel[k]));
-        *gathered[k] = multiply_add(before, color, kept * *gathered[k]);
-      }
-      here.through = multiply_add(zero - piece.opacity, here.through, here.through);
+      here.red = kept * here.red;
+      here.green = kept * here.green;
+      here.blue = kept * here.blue;
+      lay(interval, before * piece.opacity, before * multiply_add(low_weight, low_place, high_weight * high_place),
+          here);
+      here.through = here.through - here.through * piece.opacity;
     }
     light.red = multiply_add(light.through, here.red, light.red);
     light.green = multiply_add(light.through, here.green, light.green);
     light.blue = multiply_add(light.through, here.blue, light.blue);
     light.through = light.through * here.through;
+    return light;
   }
 
   // Of any density: rays on which the scalar rises pass the colour map's intervals upwards, the others downwards; each
   // interval that the cell touches is laid down once in each direction for the rays it concerns.
-  __attribute__((noinline)) void lay_intervals_each_way(const CellScalar& cell, const Lanes& s_in, const Lanes& s_out,
-                                                        const Lanes& length, Light& light) const {
+  __attribute__((noinline, flatten)) Light lay_intervals_each_way(const CellScalar& cell, Lanes s_in, Lanes s_out,
+                                                                  Lanes length, Light light) const {
     const Lanes zero(0.0F);
     const Lanes one(1.0F);
     const Lanes rise = s_out - s_in;
@@ -329,10 +351,11 @@ class ScalarIntegrator : public BlockOptics {
         add_segment(mapped(interval, at_from), mapped(interval, at_to), part, light);
       }
     }
+    return light;
   }
 
-  __attribute__((noinline)) void sample_map(const CellScalar& cell, const Lanes& s_in, const Lanes& s_out,
-                                            const Lanes& length, Light& light) const {
+  __attribute__((noinline, flatten)) Light sample_map(const CellScalar& cell, Lanes s_in, Lanes s_out, Lanes length,
+                                                      Light light) const {
     const float step = 1.0F / static_cast<float>(optics_.samples);
     const Lanes step_length = length * Lanes(step);
     for (int i = 0; i < optics_.samples; ++i) {
@@ -346,6 +369,7 @@ class ScalarIntegrator : public BlockOptics {
       }
       absorb(color, Lanes(1.0F) - exp_minus(color.channel[3] * step_length), light);
     }
+    return light;
   }
 
   const CellScalar* scalars_;

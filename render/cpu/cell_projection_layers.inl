@@ -77,7 +77,7 @@ class Layers {
 
   const CellOptics& optics_;
   const BlockInput& block_;
-  std::uint32_t at_[lane_count];         // the next one of each ray
+  std::uint32_t at_[lane_count];        // the next one of each ray
   alignas(64) float next_[lane_count];  // twice its u
 };
 

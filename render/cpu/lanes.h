@@ -215,13 +215,21 @@ inline Lanes reciprocal(const Lanes& a) {
 inline float smallest(const Lanes& a) {
 #if defined(__AVX512F__)
   return _mm512_reduce_min_ps(a.v);
+#elif defined(__SSE2__)
+#if defined(__AVX__)
+  const __m256 eight = _mm256_min_ps(a.v[0], a.v[1]);
+  const __m128 four = _mm_min_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
 #else
-  float v[lane_count];
-  store(v, a);
-  for (int half = lane_count / 2; half > 0; half /= 2) {
-    for (int i = 0; i < half; ++i) v[i] = v[i] < v[i + half] ? v[i] : v[i + half];
+  const __m128 four = _mm_min_ps(_mm_min_ps(a.v[0], a.v[1]), _mm_min_ps(a.v[2], a.v[3]));
+#endif
+  const __m128 two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+  return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));
+#else
+  float least = a.v[0][0];
+  for (int i = 0; i < parts; ++i) {
+    for (int l = 0; l < width; ++l) least = a.v[i][l] < least ? a.v[i][l] : least;
   }
-  return v[0];
+  return least;
 #endif
 }
 inline float largest(const Lanes& a) {
