@@ -93,7 +93,8 @@ static __attribute__((noinline)) void compose_ray_by_ray(const Integrator& integ
 }
 
 // A block's cells lie scattered over its tile's records: their cache lines are asked for a few cells ahead.
-constexpr std::uint32_t prefetch_ahead = 4;
+constexpr std::uint32_t planes_ahead = 12;
+constexpr std::uint32_t values_ahead = 6;
 
 template <class Record>
 static inline void prefetch(const Record& record) {
@@ -134,7 +135,7 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
   std::uint32_t count = 0;
   for (std::size_t n = 0; n < cell_count; ++n) {
     const std::uint32_t record = cells[n];
-    if (n + prefetch_ahead < cell_count) prefetch(planes[cells[n + prefetch_ahead]]);
+    if (n + planes_ahead < cell_count) prefetch(planes[cells[n + planes_ahead]]);
     Lanes u_in;
     Lanes u_out;
     cross(planes[record], pixels, nearest, farthest, u_in, u_out);
@@ -179,7 +180,7 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   for (std::uint32_t n = 0; n < count; ++n) {
     const std::uint32_t next = scratch.order[n];
     const unsigned lanes = scratch.lanes[next];
-    if (n + prefetch_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[n + prefetch_ahead]]));
+    if (n + values_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[n + values_ahead]]));
     steps += static_cast<unsigned>(__builtin_popcount(lanes));
     const Lanes u_in = load(scratch.u_in + 16 * next);
     const Lanes u_out = load(scratch.u_out + 16 * next);
