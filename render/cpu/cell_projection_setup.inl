@@ -61,6 +61,22 @@ constexpr FaceLists make_face_lists() {
 
 constexpr FaceLists face_lists = make_face_lists();
 
+static inline D4 multiply_add(const D4& a, const D4& b, const D4& c) {
+#if defined(__FMA__)
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+static inline bool any_above(const F4& v, float limit) {
+#if defined(__SSE2__)
+  return _mm_movemask_ps(_mm_cmpnle_ps(v, _mm_set1_ps(limit))) != 0;
+#else
+  return !(v[0] <= limit && v[1] <= limit && v[2] <= limit && v[3] <= limit);
+#endif
+}
+
 // So many cells of a tile at once. Corners stand in ascending order of vertex index, face k opposite corner k.
 struct CellGroup {
   Indices vertex[4];
@@ -224,9 +240,9 @@ static inline void write_colors(const View& view, const SetupInput& input, doubl
     high = v == 0 ? here : (here > high ? here : high);
     const D4 exact = to_doubles(here);
     mean += 0.25 * exact;
-    gx += exact * s.wx[v][l];
-    gy += exact * s.wy[v][l];
-    gz += exact * s.wz[v][l];
+    gx = multiply_add(exact, D4{} + s.wx[v][l], gx);
+    gy = multiply_add(exact, D4{} + s.wy[v][l], gy);
+    gz = multiply_add(exact, D4{} + s.wz[v][l], gz);
   }
   const double across = view.perspective ? view.pixel : 0.0;
   const double h = view.perspective ? s.mz[l] : 1.0;
@@ -248,8 +264,7 @@ static inline void write_colors(const View& view, const SetupInput& input, doubl
   const F4 reach =
       side * (magnitude(base_a) + magnitude(base_b)) + magnitude(base_c) +
       static_cast<float>(s.extent[l]) * (side * (magnitude(slope_a) + magnitude(slope_b)) + magnitude(slope_c));
-  const bool tame = reach[0] <= 32.0F && reach[1] <= 32.0F && reach[2] <= 32.0F && reach[3] <= 32.0F;
-  colors.wild = tame ? 0 : 1;
+  colors.wild = any_above(reach, 32.0F) ? 1 : 0;
   store4(range.low, low);
   store4(range.high, high);
 }
