@@ -261,6 +261,17 @@ std::string refusal(const Trials& trials, const Candidate* best, std::size_t ato
          percent(trials.best_translation) + " of them";
 }
 
+// False where the cell stays as it was fitted.
+bool make_symmetric(UnitCell& cell, double nearest, const FindCellReport& report, std::size_t on_site) {
+  const double per_site = std::max(static_cast<double>(on_site) / static_cast<double>(cell.basis.size()), 1.0);
+  const double standard_error = report.displacement / std::sqrt(per_site);
+  const bool exact = report.displacement < 1e-6 * nearest;
+  const double tolerance = exact ? 1e-6 * nearest : std::max(8.0 * standard_error, 1e-3 * nearest);
+  const std::optional<UnitCell> symmetric = symmetrized(cell, std::min(tolerance, 0.02 * nearest));
+  if (symmetric) cell = *symmetric;
+  return symmetric.has_value();
+}
+
 }  // namespace
 
 Crystal find_unit_cell(const Atoms& atoms, const FindCellOptions& options, FindCellReport& report, Progress& progress) {
@@ -300,15 +311,18 @@ Crystal find_unit_cell(const Atoms& atoms, const FindCellOptions& options, FindC
   Crystal crystal;
   const FittedCell& reference = grains.cells.front();
   crystal.grains.push_back(to_unit_cell(atoms, reference));
+  const bool symmetric = make_symmetric(crystal.grains[0], reference.nearest, report, grains.on_site);
   const std::vector<Mat3> symmetries = symmetry_rotations(reference, 0.1 * reference.nearest);
   report.grains.resize(grains.cells.size());
   for (std::size_t g = 0; g < grains.cells.size(); ++g) {
-    // The grain's cell is the first one's, turned least, and strained as the grain is: the same fractions.
+    // The grain's cell is the first one's, turned least: the same fractions. Strained as the grain is, unless that
+    // would undo the symmetry.
     const Mat3 map = grains.cells[g].vectors * glm::inverse(reference.vectors);
     const Mat3 rotation = rotation_of(map);
     report.grains[g].rotation = g == 0 ? Mat3(1.0) : smallest_rotation(rotation, symmetries);
     if (g == 0) continue;
-    const Mat3 turn = map * glm::transpose(rotation) * report.grains[g].rotation;
+    const Mat3 strain = symmetric ? Mat3(1.0) : map * glm::transpose(rotation);
+    const Mat3 turn = strain * report.grains[g].rotation;
     UnitCell cell = crystal.grains[0];
     for (Vec3& v : cell.primitive) v = turn * v;
     for (BasisAtom& atom : cell.basis) atom.position = turn * atom.position;

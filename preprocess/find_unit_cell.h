@@ -42,11 +42,12 @@ struct FindCellReport {
   std::vector<std::string> notes;
 };
 
-// Primitive (reduced) vectors and basis of the crystal, least-squares fitted to the atoms, its orientation the
-// sample's. Works with vacancies, foreign atoms, thermal noise, vacuum around the sample, periodic or open boxes, in
-// any orientation; a strained or cracked sample gives the cell of its greater part. Several grains: one cell each.
-// Returns a Crystal that is not known() when nothing repeats (a glass, fewer than some tens of atoms) and says why.
-// Same result at any number of threads and for any order of the atoms.
+// Primitive (reduced) vectors and basis of the crystal, least-squares fitted to the atoms and then symmetrized() within
+// what the fit can tell apart (eight standard errors; where the atoms are off their sites at all, at least 0.1 % of the
+// nearest-neighbour distance), its orientation the sample's. Works with vacancies, foreign atoms, thermal noise, vacuum
+// around the sample, periodic or open boxes, in any orientation; a strained or cracked sample gives the cell of its
+// greater part. Several grains: one cell each. Returns a Crystal that is not known() when nothing repeats (a glass,
+// fewer than some tens of atoms) and says why. Same result at any number of threads and for any order of the atoms.
 Crystal find_unit_cell(const Atoms& atoms, const FindCellOptions& options, FindCellReport& report,
                        Progress& progress = no_progress());
 
@@ -63,5 +64,11 @@ struct SpaceGroup {
 // for what noise of 3 % leaves of error in a cell fitted to some thousand atoms. Nothing when
 // spglib finds no group for it.
 std::optional<SpaceGroup> find_space_group(const UnitCell& cell, double tolerance = 0.0);
+
+// The same crystal with the symmetry it has within `tolerance` (Å) exact: its vectors and positions averaged over the
+// operations of its space group, basis[0] and the orientation kept as nearly as that allows. What a cell fitted to
+// noisy atoms is to a perfect crystal: its empty spheres hold all their atoms again. Nothing when spglib finds no group
+// or a place would move by more than four tolerances.
+std::optional<UnitCell> symmetrized(const UnitCell& cell, double tolerance);
 
 }  // namespace atomesh

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <optional>
 #include <type_traits>
@@ -62,16 +63,37 @@ bool reduces(const ReduceOptions& options) {
   return !options.mask.empty() || options.keep_every > 1;
 }
 
-std::optional<UnitCell> choose_unit_cell(const std::string& choice, const std::optional<UnitCell>& of_file,
-                                         std::string& source) {
-  std::optional<UnitCell> cell;
-  if (choice == "auto") {
-    cell = of_file;
-  } else if (choice != "none") {
-    cell = read_unit_cell(choice);
+// What was thinned out or masked no longer has the crystal's neighbours, and a unit cell serves no value of one's own
+// choice but the mesher.
+bool needs_crystal(const PipelineOptions& options) {
+  if (reduces(options.reduce)) return false;
+  const bool defects = options.wanted.defects && options.scalar.empty();
+  const bool mesh = options.wanted.tetrahedra || options.wanted.surface;
+  const std::string& mesher = options.tetrahedralize.mesher;
+  return defects || (mesh && options.carve && (mesher == "auto" || mesher == "pattern"));
+}
+
+Crystal choose_crystal(const PipelineOptions& options, const std::optional<UnitCell>& of_file, const Atoms& atoms,
+                       PipelineReport& report, Progress& progress) {
+  const std::string& choice = options.unit_cell;
+  Crystal crystal;
+  if (choice == "auto" && of_file) crystal.grains = {*of_file};
+  if (choice != "auto" && choice != "found" && choice != "none") crystal.grains = {read_unit_cell(choice)};
+  report.unit_cell_source = crystal.known() ? "file" : "none";
+  if (crystal.known() || choice == "none" || !needs_crystal(options)) return crystal;
+  crystal = find_unit_cell(atoms, options.find_cell, report.find_cell, progress);
+  if (crystal.known()) report.unit_cell_source = "found";
+  return crystal;
+}
+
+// A sample of several grains carries the number of each atom's grain, -1 where there is none.
+void add_grain_column(const Crystal& crystal, Atoms& atoms) {
+  if (crystal.grain_of.empty() || atoms.find_column("grain") != nullptr) return;
+  Column column{"grain", std::vector<double>(atoms.size())};
+  for (std::size_t i = 0; i < atoms.size(); ++i) {
+    column.values[i] = crystal.grain_of[i] == no_grain ? -1.0 : static_cast<double>(crystal.grain_of[i]);
   }
-  source = cell ? "file" : "none";
-  return cell;
+  atoms.columns.push_back(std::move(column));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -96,7 +118,9 @@ void describe(const std::string& path, const PipelineOptions& options, const Pip
       {"vertices", material.mesh.vertices.size()},
       {"merged_vertices", report.tetrahedralize.merged_vertices},
       {"flat_removed", report.tetrahedralize.flat_removed},
+      {"stamped", report.tetrahedralize.pattern.stamped},
       {"carved", report.carve.removed},
+      {"tetrahedra_before_simplify", report.simplify.tetrahedra_before},
       {"tetrahedra", tetrahedra},
       {"triangles", material.surface.triangles.size()},
       {"positional_atoms", report.defects.positional_atoms},
@@ -104,6 +128,8 @@ void describe(const std::string& path, const PipelineOptions& options, const Pip
       {"extra_atoms", report.defects.extra_atoms},
       {"vacancies", material.defects.vacancies.size()},
       {"extras", material.defects.extras.size()},
+      {"substitutions", material.defects.substitutions.size()},
+      {"grains", report.find_cell.grains.size()},
   };
 }
 
@@ -125,10 +151,14 @@ std::vector<std::pair<std::string, std::string>> provenance_options(const Pipeli
                 : options.carve_options.radius > 0.0 ? fmt::format("{}", options.carve_options.radius)
                                                      : "auto"},
       {"unit_cell", cell},
-      {"unit_cell_hash", cell == "auto" || cell == "none" ? "" : content_hash_of_file(cell)},
+      {"unit_cell_hash", cell == "auto" || cell == "found" || cell == "none" ? "" : content_hash_of_file(cell)},
       {"neighbourhood", fmt::format("{}", options.defects.neighbourhood)},
       {"tolerance", fmt::format("{}", options.defects.tolerance)},
+      {"noise", options.defects.noise ? fmt::format("{}", *options.defects.noise) : "auto"},
+      {"noise_factor", fmt::format("{}", options.defects.noise_factor)},
+      {"smoothing", std::to_string(options.defects.smoothing)},
       {"scalar", options.scalar},
+      {"simplify", options.simplify ? options.simplify_options.strategy : "off"},
   };
 }
 
@@ -143,12 +173,15 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
   StageClock stage(material.provenance.stages, report.stage_memory, progress);
   const MaterialParts& wanted = options.wanted;
 
+  Crystal crystal;
   {
     ReadResult read = stage("read_atoms", [&] { return read_atoms(path, options.read, progress); });
     report.read = std::move(read.report);
     material.atoms = std::move(read.atoms);
-    material.unit_cell = stage(
-        "find_unit_cell", [&] { return choose_unit_cell(options.unit_cell, read.unit_cell, report.unit_cell_source); });
+    crystal = stage("find_unit_cell",
+                    [&] { return choose_crystal(options, read.unit_cell, material.atoms, report, progress); });
+    if (crystal.known()) material.unit_cell = crystal.grains.front();
+    add_grain_column(crystal, material.atoms);
   }
   if (reduces(options.reduce)) {
     material.atoms =
@@ -157,15 +190,19 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
 
   // The surface is the boundary of the mesh. Defects need neither.
   if (wanted.tetrahedra || wanted.surface) {
-    material.mesh = stage("tetrahedralize", [&] {
-      return tetrahedralize(material.atoms, options.tetrahedralize, report.tetrahedralize, progress);
-    });
     // What thinning out left has no nearest-neighbour distance to tell matter from emptiness by.
     const bool thinned = report.reduce.dropped > 0;
-    if (options.carve && thinned && options.carve_options.radius <= 0.0) {
+    const bool carves = options.carve && (!thinned || options.carve_options.radius > 0.0);
+    material.mesh = stage("tetrahedralize", [&] {
+      const double radius = carves ? options.carve_options.radius : std::numeric_limits<double>::infinity();
+      const Crystal none;
+      return tetrahedralize(material.atoms, reduces(options.reduce) ? none : crystal, radius, options.tetrahedralize,
+                            report.tetrahedralize, progress);
+    });
+    if (options.carve && !carves) {
       report.notes.emplace_back(
           "nothing was carved: the sample was thinned out, so no radius can be told from it; give one with --carve");
-    } else if (options.carve) {
+    } else if (carves) {
       material.mesh = stage(
           "carve", [&] { return carve(std::move(material.mesh), options.carve_options, report.carve, progress); });
     }
@@ -174,30 +211,40 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
                          memory_to_extract_surface(material.mesh.vertices.size(), material.mesh.tetrahedra.size()));
       material.surface = stage("extract_surface", [&] { return extract_surface(material.mesh, progress); });
     }
+  }
+
+  if (wanted.defects && !options.scalar.empty()) {
+    material.defects = stage("assign_scalar", [&] { return assign_scalar(material.atoms, options.scalar); });
+  } else if (wanted.defects && crystal.known() && reduces(options.reduce)) {
+    report.notes.emplace_back(
+        "defects were not quantified: a reduced sample no longer has the crystal's neighbours; choose what to show "
+        "with --scalar");
+  } else if (wanted.defects && crystal.known()) {
+    require_memory_for("quantify_defects", material.atoms.size(), "atoms",
+                       memory_to_quantify_defects(material.atoms.size()));
+    material.defects = stage("quantify_defects", [&] {
+      return quantify_defects(material.atoms, crystal, options.defects, report.defects, progress);
+    });
+  } else if (wanted.defects) {
+    const std::string& why = report.find_cell.why;
+    report.notes.push_back("defects were not quantified: " + (why.empty() ? "no unit cell is known" : why) +
+                           "; give one with --unit-cell, or a value to show with --scalar");
+  }
+
+  if (options.simplify && wanted.tetrahedra) {
+    if (options.before_simplify) options.before_simplify(material);
+    stage("simplify", [&] {
+      simplify(material.mesh, material.surface, material.atoms, material.defects, options.simplify_options,
+               report.simplify, progress);
+    });
+  }
+  if (wanted.tetrahedra || wanted.surface) {
     stage("measure", [&] {
       report.volume = volume(material.mesh, progress);
       report.min_dihedral_deg = min_dihedral_degrees(material.mesh, progress);
       report.surface_area = area(material.surface, material.mesh.vertices);
       report.surface_closed = is_closed(material.surface, progress);
     });
-  }
-
-  if (wanted.defects && !options.scalar.empty()) {
-    material.defects = stage("assign_scalar", [&] { return assign_scalar(material.atoms, options.scalar); });
-  } else if (wanted.defects && material.unit_cell && reduces(options.reduce)) {
-    report.notes.emplace_back(
-        "defects were not quantified: a reduced sample no longer has the crystal's neighbours; choose what to show "
-        "with --scalar");
-  } else if (wanted.defects && material.unit_cell) {
-    require_memory_for("quantify_defects", material.atoms.size(), "atoms",
-                       memory_to_quantify_defects(material.atoms.size()));
-    material.defects = stage("quantify_defects", [&] {
-      return quantify_defects(material.atoms, *material.unit_cell, options.defects, report.defects, progress);
-    });
-  } else if (wanted.defects) {
-    report.notes.emplace_back(
-        "defects were not quantified: no unit cell is known; give one with --unit-cell, or a value to show with "
-        "--scalar");
   }
 
   describe(path, options, report, material);

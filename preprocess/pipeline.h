@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,9 +11,11 @@
 #include "core/material_file.h"
 #include "core/progress.h"
 #include "preprocess/carve.h"
+#include "preprocess/find_unit_cell.h"
 #include "preprocess/quantify_defects.h"
 #include "preprocess/read_atoms.h"
 #include "preprocess/reduce_atoms.h"
+#include "preprocess/simplify.h"
 #include "preprocess/tetrahedralize.h"
 
 namespace atomesh {
@@ -23,12 +26,18 @@ struct PipelineOptions {
   TetrahedralizeOptions tetrahedralize;
   bool carve = true;
   CarveOptions carve_options;
-  // "auto" (the file's own, else none), "none", or the path of a .dat with primitive and basis.
+  // "auto" (the file's own, else found), "found" (from the atoms, whatever the file says), "none", or the path of a
+  // .dat with primitive and basis.
   std::string unit_cell = "auto";
+  FindCellOptions find_cell;
   DefectOptions defects;
   // What takes the place of the positional defect value instead of quantifying defects: the name of a column of the
   // file, or values by species, "Ga=0,In=1" (species not named have 0). The smallest value is shifted to zero. "" none.
   std::string scalar;
+  bool simplify = false;
+  SimplifyOptions simplify_options;
+  // Called with the whole mesh, its surface and defects before they are simplified, by who wants to compare.
+  std::function<void(const Material&)> before_simplify;
   // What the caller will use. Stages that only make something else are left out: atoms alone need no mesh, a surface
   // needs no defects.
   MaterialParts wanted;
@@ -40,9 +49,11 @@ struct PipelineReport {
   TetrahedralizeReport tetrahedralize;
   CarveReport carve;
   DefectReport defects;
+  FindCellReport find_cell;               // when it was looked for
+  SimplifyReport simplify;                // when it was simplified
   std::string unit_cell_source = "none";  // "file", "found", "none"
   double volume = 0.0;                    // Å³, after carving
-  double min_dihedral_deg = 0.0;          // of the carved mesh
+  double min_dihedral_deg = 0.0;          // of the mesh in the end
   double surface_area = 0.0;              // Å²
   bool surface_closed = false;
   // Of each of Material::provenance.stages: the most memory that the process held while it ran, bytes.

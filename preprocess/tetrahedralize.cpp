@@ -43,22 +43,61 @@ void make_vertices(const Atoms& atoms, TetMesh& mesh, Progress& progress) {
   }
 }
 
-}  // namespace
-
-std::vector<std::string> mesher_names() {
-  return {"auto", "delaunay", "tetgen"};
-}
-
-TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options, TetrahedralizeReport& report,
-                       Progress& progress) {
-  report = {};
+void check_options(const Crystal& crystal, double carving_radius, const TetrahedralizeOptions& options) {
   const std::vector<std::string> names = mesher_names();
   if (std::find(names.begin(), names.end(), options.mesher) == names.end()) {
     const std::string nearest = nearest_name(options.mesher, names);
     throw UsageError("unknown mesher \"" + options.mesher + "\"; " +
                      (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
-                     "There are auto, delaunay and tetgen");
+                     "There are auto, delaunay, pattern and tetgen");
   }
+  if (options.mesher != "pattern") return;
+  if (!crystal.known()) {
+    throw UsageError("the pattern mesher stamps the unit cell, and none is known; give one, or take the mesher auto");
+  }
+  if (std::isinf(carving_radius)) {
+    throw UsageError("the pattern mesher makes no tetrahedra that carving would remove, so it needs carving");
+  }
+}
+
+// Whether it is worth trying the pattern; otherwise the report says why not.
+bool may_stamp(const TetMesh& mesh, const Crystal& crystal, double carving_radius, TetrahedralizeReport& report) {
+  // Less is meshed before anybody has looked.
+  constexpr std::size_t fewest_atoms = 2000;
+  report.why = !crystal.known()                      ? "auto: no unit cell is known whose pattern could be stamped"
+               : std::isinf(carving_radius)          ? "auto: nothing is carved, and the pattern fills no convex hull"
+               : mesh.vertices.size() < fewest_atoms ? "auto: the sample is small"
+                                                     : "";
+  return report.why.empty();
+}
+
+void stamp(const Atoms& atoms, const Crystal& crystal, double carving_radius, TetMesh& mesh,
+           TetrahedralizeReport& report, Progress& progress) {
+  LatticeSites sites;
+  if (report.merged_vertices == 0) {
+    sites = assign_lattice_sites(atoms, crystal, {}, progress);
+  } else {
+    Crystal of_vertices{crystal.grains, {}};
+    if (!crystal.grain_of.empty()) {
+      for (const Index atom : mesh.vertex_atom) of_vertices.grain_of.push_back(crystal.grain_of[atom]);
+    }
+    sites = assign_lattice_sites(atoms.subset(mesh.vertex_atom), of_vertices, {}, progress);
+  }
+  const PatternOptions options{.largest_radius = carving_radius};
+  mesh.tetrahedra = tetrahedralize_pattern(mesh.vertices, std::move(sites), options, report.pattern, progress);
+  if (report.pattern.done) mesh.delaunay = report.pattern.delaunay;
+}
+
+}  // namespace
+
+std::vector<std::string> mesher_names() {
+  return {"auto", "delaunay", "pattern", "tetgen"};
+}
+
+TetMesh tetrahedralize(const Atoms& atoms, const Crystal& crystal, double carving_radius,
+                       const TetrahedralizeOptions& options, TetrahedralizeReport& report, Progress& progress) {
+  report = {};
+  check_options(crystal, carving_radius, options);
   if (atoms.size() >= no_index) throw Error("more than 2^32 - 2 atoms cannot be meshed: indices have 32 bits");
   progress.check();
 
@@ -67,18 +106,21 @@ TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options,
   make_vertices(atoms, mesh, progress);
   report.merged_vertices = atoms.size() - mesh.vertices.size();
 
-  if (options.mesher == "tetgen") {
-    report.mesher = "tetgen";
-    report.why = "asked for";
-    mesh.tetrahedra = delaunay_tetgen(mesh.vertices, report, progress);
-  } else {
-    report.mesher = "delaunay";
-    report.why = options.mesher == "auto"
-                     ? "auto: exact, leaves no flat tetrahedron in a perfect crystal, and the fastest there"
-                     : "asked for";
-    mesh.tetrahedra = delaunay_cgal(mesh.vertices, progress);
+  report.why = "asked for";
+  if (options.mesher == "pattern" || (options.mesher == "auto" && may_stamp(mesh, crystal, carving_radius, report))) {
+    stamp(atoms, crystal, carving_radius, mesh, report, progress);
   }
-  report.slivers_removed = remove_slivers(mesh.tetrahedra, mesh.vertices);
+  if (report.pattern.done) {
+    report.mesher = "pattern";
+    report.why = (options.mesher == "auto" ? "auto: " : "asked for: ") + report.pattern.why;
+  } else {
+    const std::string mesher = options.mesher == "tetgen" ? "tetgen" : "delaunay";
+    report.mesher = mesher;
+    if (!report.pattern.why.empty()) report.why = "the pattern does not serve: " + report.pattern.why;
+    mesh.tetrahedra =
+        mesher == "tetgen" ? delaunay_tetgen(mesh.vertices, report, progress) : delaunay_cgal(mesh.vertices, progress);
+    report.slivers_removed = remove_slivers(mesh.tetrahedra, mesh.vertices);
+  }
   put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size(), progress);
   progress.update(1.0);
   return mesh;

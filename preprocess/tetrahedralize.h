@@ -1,17 +1,22 @@
-// Atoms → TetMesh: the Delaunay tetrahedralization of their positions.
+// Atoms → TetMesh: the Delaunay tetrahedralization of their positions, or the crystal's own stamped over them.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/atoms.h"
 #include "core/progress.h"
 #include "core/tet_mesh.h"
+#include "preprocess/crystal.h"
+#include "preprocess/tetrahedralize_pattern.h"
 
 namespace atomesh {
 
 struct TetrahedralizeOptions {
-  std::string mesher = "auto";  // "auto", "delaunay" (CGAL), "tetgen"
+  // "delaunay" (CGAL), "tetgen", "pattern" (tetrahedralize_pattern.h), or "auto": the pattern where the crystal allows
+  // it, else Delaunay.
+  std::string mesher = "auto";
 };
 
 struct TetrahedralizeReport {
@@ -20,13 +25,26 @@ struct TetrahedralizeReport {
   std::size_t merged_vertices = 0;  // atoms that share another atom's exact position
   std::size_t flat_removed = 0;     // tetrahedra of exactly zero volume that the mesher made and that were removed
   std::size_t slivers_removed = 0;  // tetrahedra that only rounding kept from zero volume: see remove_slivers.h
+  PatternReport pattern;            // when the pattern was tried
 };
 
 // One vertex per distinct position. Fewer than four atoms, or all in one plane, give a mesh without tetrahedra. No flat
 // tetrahedron leaves here; the mesh passes validate(). The result does not depend on the number of threads.
-// Throws UsageError for an unknown mesher (naming those there are), UnavailableError for one left out of the build.
-TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options, TetrahedralizeReport& report,
+//
+// The pattern needs to know the crystal, and the radius above which tetrahedra will be carved away: it does not make
+// them. 0: the one that carve() finds by itself; infinity: nothing will be carved, and the pattern is of no use. Asked
+// for where it does not serve, the pattern gives way to Delaunay, and report.why says why.
+// Throws UsageError for an unknown mesher (naming those there are), and for "pattern" where no crystal is known or
+// nothing will be carved; UnavailableError for a mesher left out of the build.
+TetMesh tetrahedralize(const Atoms& atoms, const Crystal& crystal, double carving_radius,
+                       const TetrahedralizeOptions& options, TetrahedralizeReport& report,
                        Progress& progress = no_progress());
+
+// The whole convex hull of atoms of which no crystal is known.
+inline TetMesh tetrahedralize(const Atoms& atoms, const TetrahedralizeOptions& options, TetrahedralizeReport& report,
+                              Progress& progress = no_progress()) {
+  return tetrahedralize(atoms, {}, std::numeric_limits<double>::infinity(), options, report, progress);
+}
 
 std::vector<std::string> mesher_names();
 

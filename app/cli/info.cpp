@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/cli/commands.h"
 #include "app/cli/load_material.h"
@@ -13,6 +14,7 @@
 #include "app/cli/text_table.h"
 #include "core/crb_format.h"
 #include "core/crt_material.h"
+#include "preprocess/find_unit_cell.h"
 
 namespace atomesh::cli {
 namespace {
@@ -91,6 +93,30 @@ Json provenance_json(const Provenance& provenance) {
                        {"stages", stages}});
 }
 
+Json cell_json(const UnitCell& cell) {
+  Json primitive = Json::array();
+  for (const Vec3& v : cell.primitive) primitive.push(v);
+  Json basis = Json::array();
+  for (const BasisAtom& atom : cell.basis) {
+    basis.push(Json::object({{"species", atom.species}, {"position", atom.position}}));
+  }
+  return Json::object({{"primitive", primitive}, {"basis", basis}});
+}
+
+// The sample's own cell and what its symmetry says; null without one.
+Json unit_cell_json(const Material& material, const std::optional<SpaceGroup>& group) {
+  if (!material.unit_cell) return {};
+  Json json = cell_json(*material.unit_cell);
+  if (!group) return json;
+  json.set("space_group", Json::object({{"number", group->number},
+                                        {"symbol", group->symbol},
+                                        {"point_group", group->point_group},
+                                        {"conventional", cell_json(group->conventional)},
+                                        {"lengths", Json::array({group->a, group->b, group->c})},
+                                        {"angles_deg", Json::array({group->alpha, group->beta, group->gamma})}}));
+  return json;
+}
+
 // Of the file format; a reader accepts no other. Atoms files have none.
 Json version_of(const std::string& kind) {
   return kind == "crb" ? Json(crb_version) : kind == "crt" ? Json(crt_version) : Json();
@@ -103,7 +129,7 @@ std::string kind_of(const std::string& path, const LoadedMaterial& loaded) {
 }
 
 void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, const std::vector<SectionInfo>& sections,
-                const std::vector<std::string>& problems, Session& session) {
+                const std::vector<std::string>& problems, const std::optional<SpaceGroup>& group, Session& session) {
   const Material& material = loaded.material;
   const Bounds bounds = bounds_of(material.atoms.positions);
   const Box& box = material.atoms.box;
@@ -118,10 +144,18 @@ void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, co
                   glm::length(box.vectors[1]), glm::length(box.vectors[2]), box.periodic[0] ? "x" : "-",
                   box.periodic[1] ? "y" : "-", box.periodic[2] ? "z" : "-");
   }
-  if (material.unit_cell) session.print("unit cell    {} basis atoms", material.unit_cell->basis.size());
+  if (material.unit_cell) {
+    session.print("unit cell    {} basis atoms", material.unit_cell->basis.size());
+    if (group) {
+      session.print("space group  {} (no. {}); conventional a {:.5g} b {:.5g} c {:.5g} Å, α {:.5g} β {:.5g} γ {:.5g}°",
+                    group->symbol, group->number, group->a, group->b, group->c, group->alpha, group->beta,
+                    group->gamma);
+    }
+  }
   if (material.defects.present()) {
-    session.print("defects      {} vacancies, {} extra atoms", grouped(material.defects.vacancies.size()),
-                  grouped(material.defects.extras.size()));
+    session.print("defects      {} vacancies, {} extra atoms, {} of them substitutions",
+                  grouped(material.defects.vacancies.size()), grouped(material.defects.extras.size()),
+                  grouped(material.defects.substitutions.size()));
   }
   session.print("memory       {}", byte_size(memory_of(material)));
   const std::vector<Range> ranges = ranges_of(material);
@@ -157,7 +191,9 @@ int run_info(const InfoArguments& arguments, const CLI::App& app, Session& sessi
   const std::vector<SectionInfo> sections = kind == "crb" ? list_sections(arguments.input) : std::vector<SectionInfo>();
   session.progress().stage("validate");
   const std::vector<std::string> problems = problems_of(material, session.progress());
-  print_info(arguments, loaded, sections, problems, session);
+  const std::optional<SpaceGroup> group =
+      material.unit_cell ? find_space_group(*material.unit_cell) : std::optional<SpaceGroup>();
+  print_info(arguments, loaded, sections, problems, group, session);
 
   if (session.json_wanted()) {
     Json scalars = Json::object();
@@ -179,8 +215,10 @@ int run_info(const InfoArguments& arguments, const CLI::App& app, Session& sessi
                                      {"box", box_json(material)},
                                      {"species", species_json(material.atoms)},
                                      {"scalars", scalars},
+                                     {"unit_cell", unit_cell_json(material, group)},
                                      {"vacancies", material.defects.vacancies.size()},
                                      {"extras", material.defects.extras.size()},
+                                     {"substitutions", material.defects.substitutions.size()},
                                      {"memory_bytes", memory_of(material)},
                                      {"provenance", provenance_json(material.provenance)},
                                      {"sections", section_list},

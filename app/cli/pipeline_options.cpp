@@ -74,7 +74,8 @@ void add_pipeline_options(CLI::App& app, PipelineOptions& options, const char* t
            check_choice("--mesher", name, mesher_names());
            options.tetrahedralize.mesher = name;
          },
-         "auto, delaunay (CGAL) or tetgen [auto]")
+         "pattern: stamps the unit cell wherever the crystal is undisturbed; delaunay (CGAL); tetgen; auto: pattern "
+         "where it serves, else delaunay [auto]")
       ->type_name("NAME")
       ->group(stages_group);
   app.add_option_function<std::string>(
@@ -92,10 +93,11 @@ void add_pipeline_options(CLI::App& app, PipelineOptions& options, const char* t
          "the nearest-neighbour distances; off: keep the convex hull [auto]")
       ->type_name("auto|off|RADIUS")
       ->group(stages_group);
-  app.add_option("--unit-cell", options.unit_cell,
-                 "The perfect crystal to compare with: a .dat FILE with primitive and basis; auto: the file's own, if "
-                 "it has one; none: do not quantify defects")
-      ->type_name("FILE|auto|none")
+  app.add_option(
+         "--unit-cell", options.unit_cell,
+         "The perfect crystal to compare with: a .dat FILE with primitive and basis; found: told from the atoms; "
+         "auto: the file's own, if it has one, else found; none: do not quantify defects")
+      ->type_name("FILE|auto|found|none")
       ->capture_default_str()
       ->group(stages_group);
   app.add_option_function<std::string>(
@@ -109,9 +111,50 @@ void add_pipeline_options(CLI::App& app, PipelineOptions& options, const char* t
   add_length(app, tolerance_names, options.defects.tolerance,
              "Å within which an atom matches a site; 0: a fraction of the nearest-neighbour distance [0]",
              stages_group);
+  app.add_option_function<std::string>(
+         "--noise",
+         [&options](const std::string& text) {
+           options.defects.noise.reset();
+           if (text != "auto")
+             options.defects.noise = number("--noise", text, 0.0, "auto or an amplitude of 0 Å or more");
+         },
+         "Thermal amplitude of the atoms, rms per axis; auto: estimated from the sample; 0: none [auto]")
+      ->type_name("auto|LENGTH")
+      ->group(stages_group);
+  app.add_option_function<std::string>(
+         "--noise-factor",
+         [&options](const std::string& text) {
+           options.defects.noise_factor = number("--noise-factor", text, 0.0, "a factor of 0 or more");
+         },
+         "Displacements between neighbours up to so many thermal amplitudes count as zero [9]")
+      ->type_name("FACTOR")
+      ->group(stages_group);
+  app.add_option("--smoothing", options.defects.smoothing,
+                 "Rounds in which displacements are averaged over neighbours, so that what is displaced together "
+                 "emerges from thermal noise")
+      ->type_name("N")
+      ->check(CLI::Range(0, 10))
+      ->capture_default_str()
+      ->group(stages_group);
   app.add_option("--scalar", options.scalar,
                  "Show a value instead of quantified defects: a column of the file, or values by species as Ga=0,In=1")
       ->type_name("COLUMN|EL=N,…")
+      ->group(stages_group);
+
+  app.add_flag("--simplify,!--no-simplify", options.simplify,
+               "Take out, without loss, tetrahedra where nothing happens: fewer to store and to draw, but cut planes, "
+               "which go by atoms, cut such a mesh coarsely [--no-simplify]")
+      ->group(stages_group);
+  app.add_option_function<std::string>(
+         "--simplify-by",
+         [&options](const std::string& name) {
+           check_choice("--simplify-by", name, simplify_strategies());
+           options.simplify = true;
+           options.simplify_options.strategy = name;
+         },
+         "Simplify by collapse of edges, shortest first, or remove: vertices taken out of a Delaunay mesh, which stays "
+         "Delaunay [collapse]")
+      ->type_name("NAME")
       ->group(stages_group);
 
   app.add_option("--mask", options.reduce.mask, "Leave out these species")

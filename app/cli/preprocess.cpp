@@ -29,6 +29,7 @@ int run_preprocess(const PreprocessArguments& arguments, Session& session) {
       preprocess_file({arguments.inputs.front(), arguments.output}, arguments.settings, session);
   show_notes(file.report, session);
   session.print_text(stage_table(file));
+  session.print_text(certificate_text(file));
   if (session.json_wanted()) session.write_json(preprocess_json(file));
   return exit_done;
 }
@@ -57,6 +58,7 @@ Command add_preprocess(CLI::App& app) {
       "failure.\n"
       "Example:\n"
       "  atomesh preprocess nacl.dat -o nacl.crb\n"
+      "  atomesh preprocess hot.dump --type-names Cu -o hot.crb --unit-cell found --simplify\n"
       "  atomesh preprocess dot.xyz -o dot.crb --mask As --keep-every 20 --scalar Ga=0,In=1\n"
       "  atomesh preprocess \"steps/*.dump\" -o meshes/ --type-names Cu\n"
       "  atomesh preprocess a.dat b.xyz -o \"{name}-full.crt\" --carve off\n");

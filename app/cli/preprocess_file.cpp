@@ -38,15 +38,23 @@ std::string outcome(const std::string& stage, const Material& material, const Pi
   }
   if (stage == "find_unit_cell") {
     if (!material.unit_cell) return "none";
-    return fmt::format("from the {}, {} basis atoms", report.unit_cell_source, material.unit_cell->basis.size());
+    const std::size_t basis = material.unit_cell->basis.size();
+    if (report.unit_cell_source != "found") return fmt::format("from the file, {} basis atoms", basis);
+    const std::size_t grains = report.find_cell.grains.size();
+    return fmt::format("found, {} basis atoms{}; explains {:.4g} % of the atoms, {:.3g} Å rms off their sites", basis,
+                       grains > 1 ? fmt::format(", {} grains", grains) : "", 100.0 * report.find_cell.explained,
+                       report.find_cell.displacement);
   }
   if (stage == "reduce_atoms") {
     return fmt::format("{} atoms left; {} masked, {} thinned out", grouped(material.atoms.size()),
                        grouped(report.reduce.masked), grouped(report.reduce.dropped));
   }
   if (stage == "tetrahedralize") {
-    return fmt::format("{} tetrahedra, {}", grouped(material.mesh.tetrahedra.size() + report.carve.removed),
-                       report.tetrahedralize.mesher);
+    const std::size_t now =
+        report.simplify.strategy.empty() ? material.mesh.tetrahedra.size() : report.simplify.tetrahedra_before;
+    const std::size_t stamped = report.tetrahedralize.pattern.stamped;
+    return fmt::format("{} tetrahedra, {}{}", grouped(now + report.carve.removed), report.tetrahedralize.mesher,
+                       report.tetrahedralize.mesher == "pattern" ? fmt::format(", {} stamped", grouped(stamped)) : "");
   }
   if (stage == "carve") {
     return fmt::format("{} removed, radius {:.4g} Å", grouped(report.carve.removed), report.carve.radius);
@@ -55,15 +63,24 @@ std::string outcome(const std::string& stage, const Material& material, const Pi
     return fmt::format("{} triangles, {}", grouped(material.surface.triangles.size()),
                        report.surface_closed ? "closed" : "NOT closed");
   }
+  if (stage == "simplify") {
+    const SimplifyReport& simplify = report.simplify;
+    return fmt::format("{} tetrahedra left of {}; {} of {} free vertices removed by {}",
+                       grouped(simplify.tetrahedra_after), grouped(simplify.tetrahedra_before),
+                       grouped(simplify.removed_vertices), grouped(simplify.free_vertices), simplify.strategy);
+  }
   if (stage == "measure") {
     return fmt::format("volume {:.6g} Å³, area {:.6g} Å²", report.volume, report.surface_area);
   }
   if (stage == "quantify_defects") {
     const DefectReport& defects = report.defects;
     return fmt::format(
-        "neighbours: displaced of {} atoms, missing of {}, too many of {}; sites: {} vacancies, {} extra atoms",
+        "neighbours: displaced of {} atoms, missing of {}, too many of {}; sites: {} vacancies, {} extra atoms, {} of "
+        "them substitutions{}",
         grouped(defects.positional_atoms), grouped(defects.vacancy_atoms), grouped(defects.extra_atoms),
-        grouped(material.defects.vacancies.size()), grouped(material.defects.extras.size()));
+        grouped(material.defects.vacancies.size()), grouped(material.defects.extras.size()),
+        grouped(material.defects.substitutions.size()),
+        defects.noise > 0.0 ? fmt::format("; thermal amplitude {:.3g} Å", defects.noise) : "");
   }
   if (stage == "assign_scalar") {
     const auto& values = material.defects.positional;
@@ -73,6 +90,40 @@ std::string outcome(const std::string& stage, const Material& material, const Pi
   return "";
 }
 
+Json grains_json(const std::vector<Grain>& grains) {
+  Json list = Json::array();
+  for (const Grain& grain : grains) {
+    list.push(Json::object({{"atoms", grain.atoms},
+                            {"center", grain.center},
+                            {"rotation", Json::array({grain.rotation[0], grain.rotation[1], grain.rotation[2]})}}));
+  }
+  return list;
+}
+
+Json simplify_json(const PreprocessedFile& file) {
+  const SimplifyReport& s = file.report.simplify;
+  const std::size_t tetrahedra = file.material.mesh.tetrahedra.size();
+  if (s.strategy.empty()) {
+    return Json::object({{"tetrahedra_before", tetrahedra}, {"tetrahedra_after", tetrahedra}, {"volume_change", 0.0}});
+  }
+  return Json::object({{"strategy", s.strategy},
+                       {"tetrahedra_before", s.tetrahedra_before},
+                       {"tetrahedra_after", s.tetrahedra_after},
+                       {"least_tetrahedra", s.least_tetrahedra},
+                       {"vertices_before", s.vertices_before},
+                       {"vertices_after", s.vertices_after},
+                       {"frozen_surface", s.frozen_surface},
+                       {"frozen_defect", s.frozen_defect},
+                       {"free_vertices", s.free_vertices},
+                       {"removed_vertices", s.removed_vertices},
+                       {"volume_change", s.volume_change},
+                       {"surface_identical", s.surface_identical},
+                       {"defect_tetrahedra_identical", s.defect_tetrahedra_identical},
+                       {"scalar_error", s.scalar_error},
+                       {"picture_difference", file.picture_difference.max},
+                       {"picture_difference_where", file.picture_difference.where}});
+}
+
 Json unit_cell_json(const Material& material, const PipelineReport& report) {
   Json primitive = Json::array();
   if (material.unit_cell) {
@@ -80,7 +131,11 @@ Json unit_cell_json(const Material& material, const PipelineReport& report) {
   }
   return Json::object({{"source", report.unit_cell_source},
                        {"primitive", material.unit_cell ? primitive : Json()},
-                       {"basis", material.unit_cell ? material.unit_cell->basis.size() : 0}});
+                       {"basis", material.unit_cell ? material.unit_cell->basis.size() : 0},
+                       {"explained", report.find_cell.found ? Json(report.find_cell.explained) : Json()},
+                       {"displacement", report.find_cell.found ? Json(report.find_cell.displacement) : Json()},
+                       {"grains", grains_json(report.find_cell.grains)},
+                       {"why", report.find_cell.why}});
 }
 
 }  // namespace
@@ -99,7 +154,17 @@ PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSetti
   const auto start = Clock::now();
   PreprocessedFile file;
   file.job = job;
-  file.material = preprocess(job.input, settings.options, file.report, session.progress());
+  SimplifyPictures pictures;
+  PipelineOptions options = settings.options;
+  options.before_simplify = [&](const Material& whole) {
+    session.progress().stage("draw the whole mesh");
+    pictures.draw(whole, session.progress());
+  };
+  file.material = preprocess(job.input, options, file.report, session.progress());
+  if (pictures.drawn()) {
+    session.progress().stage("draw the simplified mesh");
+    file.picture_difference = pictures.compare(file.material, session.progress());
+  }
   Provenance& provenance = file.material.provenance;
   provenance.options = recorded_options(settings, file.report.read.format);
   provenance.options.emplace_back("input_hash", file.report.read.hash);
@@ -119,6 +184,28 @@ PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSetti
   file.output_bytes = std::filesystem::file_size(job.output);
   file.total_ms = milliseconds_since(start);
   return file;
+}
+
+std::string certificate_text(const PreprocessedFile& file) {
+  const SimplifyReport& s = file.report.simplify;
+  if (s.strategy.empty()) return "";
+  const double share = s.free_vertices > 0
+                           ? 100.0 * static_cast<double>(s.removed_vertices) / static_cast<double>(s.free_vertices)
+                           : 100.0;
+  const double worst = file.picture_difference.max;
+  return fmt::format(
+      "certificate of the simplification\n"
+      "  tetrahedra       {} of {} left; no mesh that keeps surface and defects has fewer than {}\n"
+      "  vertices         {} of {} free ones removed ({:.2f} %); {} on the surface and {} at defects stay\n"
+      "  volume change    {:.1e}\n"
+      "  surface          {}\n"
+      "  defects          {}, largest difference of a value at any original atom {:.1e}\n"
+      "  pictures         largest difference of a channel {:.1e} ({:.2f}/255){}\n",
+      grouped(s.tetrahedra_after), grouped(s.tetrahedra_before), grouped(s.least_tetrahedra),
+      grouped(s.removed_vertices), grouped(s.free_vertices), share, grouped(s.frozen_surface), grouped(s.frozen_defect),
+      s.volume_change, s.surface_identical ? "identical" : "CHANGED",
+      s.defect_tetrahedra_identical ? "tetrahedra there identical" : "tetrahedra there CHANGED", s.scalar_error, worst,
+      255.0 * worst, worst > 0.0 ? ", in " + file.picture_difference.where : "");
 }
 
 std::string stage_table(const PreprocessedFile& file) {
@@ -150,54 +237,55 @@ Json preprocess_json(const PreprocessedFile& file) {
   }
   const std::size_t tetrahedra = material.mesh.tetrahedra.size();
 
-  return Json::object(
-      {{"input", Json::object({{"file", file.job.input},
-                               {"format", report.read.format},
-                               {"hash", report.read.hash},
-                               {"atoms", report.read.atoms},
-                               {"skipped", report.read.skipped},
-                               {"duplicates", report.read.duplicates},
-                               {"frames", report.read.frames},
-                               {"frame", report.read.frame},
-                               {"species", species_json(material.atoms)},
-                               {"periodic", Json::array({periodic[0], periodic[1], periodic[2]})}})},
-       {"reduce", Json::object({{"atoms", material.atoms.size()},
-                                {"masked", report.reduce.masked},
-                                {"kept_boundary", report.reduce.kept_boundary},
-                                {"kept_transition", report.reduce.kept_transition},
-                                {"kept_sample", report.reduce.kept_sample},
-                                {"dropped", report.reduce.dropped}})},
-       {"unit_cell", unit_cell_json(material, report)},
-       {"mesh", Json::object({{"mesher", report.tetrahedralize.mesher},
-                              {"why", report.tetrahedralize.why},
-                              {"vertices", material.mesh.vertices.size()},
-                              {"tetrahedra", tetrahedra},
-                              {"merged_vertices", report.tetrahedralize.merged_vertices},
-                              {"carved", report.carve.removed},
-                              {"carve_radius", report.carve.radius},
-                              {"volume", report.volume},
-                              {"min_dihedral_deg", report.min_dihedral_deg}})},
-       {"surface", Json::object({{"triangles", material.surface.triangles.size()},
-                                 {"area", report.surface_area},
-                                 {"closed", report.surface_closed}})},
-       {"defects", Json::object({{"positional_atoms", report.defects.positional_atoms},
-                                 {"vacancy_atoms", report.defects.vacancy_atoms},
-                                 {"extra_atoms", report.defects.extra_atoms},
-                                 {"vacancies", material.defects.vacancies.size()},
-                                 {"extras", material.defects.extras.size()},
-                                 {"substitutions", material.defects.substitutions.size()},
-                                 {"radius", report.defects.radius},
-                                 {"tolerance", report.defects.tolerance},
-                                 {"surface_atoms", report.defects.surface_atoms},
-                                 {"matched_fraction", report.defects.matched_fraction}})},
-       // The mesh is not simplified: the same before and after.
-       {"simplify",
-        Json::object({{"tetrahedra_before", tetrahedra}, {"tetrahedra_after", tetrahedra}, {"volume_change", 0.0}})},
-       {"stages", stage_list},
-       {"total_ms", file.total_ms},
-       {"peak_memory_mb", peak_memory_mb()},
-       {"notes", notes},
-       {"output", Json::object({{"file", file.job.output}, {"bytes", file.output_bytes}})}});
+  return Json::object({{"input", Json::object({{"file", file.job.input},
+                                               {"format", report.read.format},
+                                               {"hash", report.read.hash},
+                                               {"atoms", report.read.atoms},
+                                               {"skipped", report.read.skipped},
+                                               {"duplicates", report.read.duplicates},
+                                               {"frames", report.read.frames},
+                                               {"frame", report.read.frame},
+                                               {"species", species_json(material.atoms)},
+                                               {"periodic", Json::array({periodic[0], periodic[1], periodic[2]})}})},
+                       {"reduce", Json::object({{"atoms", material.atoms.size()},
+                                                {"masked", report.reduce.masked},
+                                                {"kept_boundary", report.reduce.kept_boundary},
+                                                {"kept_transition", report.reduce.kept_transition},
+                                                {"kept_sample", report.reduce.kept_sample},
+                                                {"dropped", report.reduce.dropped}})},
+                       {"unit_cell", unit_cell_json(material, report)},
+                       {"mesh", Json::object({{"mesher", report.tetrahedralize.mesher},
+                                              {"why", report.tetrahedralize.why},
+                                              {"vertices", material.mesh.vertices.size()},
+                                              {"tetrahedra", tetrahedra},
+                                              {"merged_vertices", report.tetrahedralize.merged_vertices},
+                                              {"stamped", report.tetrahedralize.pattern.stamped},
+                                              {"delaunay", material.mesh.delaunay},
+                                              {"carved", report.carve.removed},
+                                              {"carve_radius", report.carve.radius},
+                                              {"volume", report.volume},
+                                              {"min_dihedral_deg", report.min_dihedral_deg}})},
+                       {"surface", Json::object({{"triangles", material.surface.triangles.size()},
+                                                 {"area", report.surface_area},
+                                                 {"closed", report.surface_closed}})},
+                       {"defects", Json::object({{"positional_atoms", report.defects.positional_atoms},
+                                                 {"vacancy_atoms", report.defects.vacancy_atoms},
+                                                 {"extra_atoms", report.defects.extra_atoms},
+                                                 {"vacancies", material.defects.vacancies.size()},
+                                                 {"extras", material.defects.extras.size()},
+                                                 {"substitutions", material.defects.substitutions.size()},
+                                                 {"radius", report.defects.radius},
+                                                 {"tolerance", report.defects.tolerance},
+                                                 {"noise", report.defects.noise},
+                                                 {"noise_limit", report.defects.noise_limit},
+                                                 {"surface_atoms", report.defects.surface_atoms},
+                                                 {"matched_fraction", report.defects.matched_fraction}})},
+                       {"simplify", simplify_json(file)},
+                       {"stages", stage_list},
+                       {"total_ms", file.total_ms},
+                       {"peak_memory_mb", peak_memory_mb()},
+                       {"notes", notes},
+                       {"output", Json::object({{"file", file.job.output}, {"bytes", file.output_bytes}})}});
 }
 
 }  // namespace atomesh::cli

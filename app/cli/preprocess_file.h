@@ -6,6 +6,7 @@
 
 #include "app/cli/json.h"
 #include "app/cli/session.h"
+#include "app/cli/simplify_pictures.h"
 #include "core/material.h"
 #include "preprocess/pipeline.h"
 
@@ -29,6 +30,7 @@ struct PreprocessedFile {
   std::vector<std::uint64_t> stage_memory;  // of each: the most memory held while it ran, bytes
   double total_ms = 0.0;
   std::uint64_t output_bytes = 0;
+  SimplifyPictures::Difference picture_difference;  // when it was simplified
 };
 
 // Provenance::options of what is written, but for the hash of the input. `format` as in provenance_options().
@@ -40,6 +42,9 @@ PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSetti
 
 // A row a stage: its time, the most memory held, what it made.
 std::string stage_table(const PreprocessedFile& file);
+
+// What simplifying changed and how near it came to what can go, in a few lines; "" when nothing was simplified.
+std::string certificate_text(const PreprocessedFile& file);
 
 // What `preprocess --json` says of one file.
 Json preprocess_json(const PreprocessedFile& file);

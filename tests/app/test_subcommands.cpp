@@ -92,7 +92,45 @@ TEST_F(Subcommands, PreprocessReportsEveryStage) {
   std::vector<std::string> names;
   for (const json& stage : report["stages"]) names.push_back(stage["name"]);
   EXPECT_EQ(names, (std::vector<std::string>{"read_atoms", "find_unit_cell", "tetrahedralize", "carve",
-                                             "extract_surface", "measure", "quantify_defects", "write_material"}));
+                                             "extract_surface", "quantify_defects", "measure", "write_material"}));
+}
+
+TEST_F(Subcommands, SimplifyingPrintsItsCertificate) {
+  ASSERT_EQ(run({"sample", "diamond-vacancy", "--atoms", "8000", "-o", "s.dat"}).exit_code, 0);
+  const auto result = run({"preprocess", "s.dat", "-o", "s.crb", "--simplify"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("certificate"), std::string::npos);
+  for (const std::string strategy : {"collapse", "remove"}) {
+    const json report = run_json({"preprocess", "s.dat", "-o", "s.crb", "--simplify-by", strategy});
+    const json& simplify = report["simplify"];
+    EXPECT_EQ(simplify["strategy"], strategy);
+    EXPECT_LT(simplify["tetrahedra_after"], simplify["tetrahedra_before"]);
+    EXPECT_GE(simplify["tetrahedra_after"], simplify["least_tetrahedra"]);
+    EXPECT_LT(simplify["volume_change"], 1e-12);
+    EXPECT_EQ(simplify["surface_identical"], true);
+    EXPECT_EQ(simplify["defect_tetrahedra_identical"], true);
+    EXPECT_EQ(simplify["scalar_error"], 0.0);
+    EXPECT_LT(simplify["picture_difference"], 1.0 / 255.0);
+    EXPECT_EQ(run_json({"info", "s.crb"})["valid"], true);
+  }
+  EXPECT_EQ(run({"preprocess", "s.dat", "-o", "s.crb", "--simplify-by", "magic"}).exit_code, 1);
+}
+
+TEST_F(Subcommands, UnitCellIsFoundAndNamed) {
+  // The same atoms without their cell.
+  ASSERT_EQ(run({"convert", "d.dat", "bare.xyz"}).exit_code, 0);
+  const json report = run_json({"preprocess", "bare.xyz", "-o", "bare.crb"});
+  EXPECT_EQ(report["unit_cell"]["source"], "found");
+  EXPECT_EQ(report["unit_cell"]["basis"], 2);
+  EXPECT_GT(report["unit_cell"]["explained"], 0.99);
+  EXPECT_EQ(report["unit_cell"]["grains"].size(), 1U);
+  EXPECT_EQ(report["defects"]["vacancies"], json::parse(place->read("truth.json"))["vacancies"].size());
+  const json cell = run_json({"info", "bare.crb"})["unit_cell"];
+  EXPECT_EQ(cell["space_group"]["number"], 227);
+  EXPECT_EQ(cell["space_group"]["symbol"], "Fd-3m");
+  EXPECT_NEAR(cell["space_group"]["lengths"][0].get<double>(), 3.567, 1e-3);
+  EXPECT_EQ(run_json({"preprocess", "bare.xyz", "-o", "bare.crb", "--unit-cell", "none"})["unit_cell"]["source"],
+            "none");
 }
 
 TEST_F(Subcommands, PreprocessDoesNotDependOnThreads) {

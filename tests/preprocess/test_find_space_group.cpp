@@ -10,6 +10,28 @@
 namespace atomesh {
 namespace {
 
+// A cell as noise leaves it: symmetrized it is the perfect one again, turned as it was.
+TEST(FindSpaceGroup, SymmetrizedCellsAreExact) {
+  for (const std::string name : {"rock-salt", "diamond", "perovskite", "rutile", "wurtzite", "graphite"}) {
+    SCOPED_TRACE(name);
+    const UnitCell perfect = find_structure_type(name).cell;
+    const Mat3 turn = random_rotation(3);
+    UnitCell noisy = perfect;
+    double sign = 1.0;
+    for (Vec3& v : noisy.primitive) v = turn * (v + 4e-4 * (sign = -sign) * Vec3(1.0, -0.4, 0.7));
+    for (BasisAtom& atom : noisy.basis)
+      atom.position = turn * (atom.position + 5e-4 * (sign = -sign) * Vec3(0.3, 1.0, -0.6));
+    const std::optional<UnitCell> exact = symmetrized(noisy, 5e-3);
+    ASSERT_TRUE(exact.has_value());
+    const std::optional<SpaceGroup> group = find_space_group(*exact, 1e-8);
+    ASSERT_TRUE(group.has_value());
+    EXPECT_EQ(group->number, find_structure_type(name).space_group);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LT(glm::distance(exact->primitive[k], turn * perfect.primitive[k]), 3e-3);
+    }
+  }
+}
+
 TEST(FindSpaceGroup, StructureTypes) {
   for (const StructureType& type : structure_types()) {
     const auto group = find_space_group(type.cell);
