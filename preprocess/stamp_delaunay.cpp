@@ -16,6 +16,8 @@ namespace {
 
 // With more of the points open than this, triangulating all of them is faster.
 constexpr double most_open = 0.95;
+// Where stamped and filled cells do not fit, stamps are taken back, each time further around.
+constexpr std::size_t most_rounds = 8;
 
 std::vector<Tetrahedron> without_stamps(std::span<const Vec3> points, const StampOptions& options, Progress& progress) {
   std::vector<Tetrahedron> tetrahedra = delaunay_cgal(points, progress);
@@ -40,24 +42,30 @@ std::vector<Tetrahedron> stamp_delaunay(std::span<const Vec3> points, const Latt
   if (sites.of.size() != points.size()) throw UsageError("stamping needs the site of every point");
   report = {};
   {
-    const StampedSample sample(points, sites, options, progress);
+    StampedSample sample(points, sites, options, progress);
     progress.update(0.4);
-    const std::vector<Index> open = sample.open_points(progress);
-    progress.update(0.5);
-    if (static_cast<double>(open.size()) <= most_open * static_cast<double>(points.size())) {
-      if (const auto filled = fill_open(sample, sites, open, progress)) {
-        progress.update(0.9);
-        report = {sample.stamped(), open.size(), filled->size()};
-        std::vector<Tetrahedron> tetrahedra(sample.stamped() + filled->size());
-        sample.write(std::span(tetrahedra).first(sample.stamped()), progress);
-        std::copy(filled->begin(), filled->end(), tetrahedra.begin() + static_cast<std::ptrdiff_t>(sample.stamped()));
-        progress.update(1.0);
-        return tetrahedra;
+    for (std::size_t round = 0; round < most_rounds; ++round) {
+      const OpenPoints open = sample.open_points(progress);
+      progress.update(0.5);
+      if (static_cast<double>(open.open.size()) > most_open * static_cast<double>(points.size())) break;
+      const Filling filling = fill_open(sample, open, progress);
+      if (!filling.conflict.empty()) {
+        sample.unstamp(filling.conflict, static_cast<double>(round) * options.largest_radius);
+        continue;
       }
+      progress.update(0.9);
+      const std::size_t stamped = sample.stamped(), filled = filling.tetrahedra.size();
+      report = {stamped, open.open.size(), filled, open.copies.size(), round};
+      std::vector<Tetrahedron> tetrahedra(stamped + filled);
+      sample.write(std::span(tetrahedra).first(stamped), progress);
+      std::copy(filling.tetrahedra.begin(), filling.tetrahedra.end(),
+                tetrahedra.begin() + static_cast<std::ptrdiff_t>(stamped));
+      progress.update(1.0);
+      return tetrahedra;
     }
   }
   std::vector<Tetrahedron> tetrahedra = without_stamps(points, options, progress);
-  report = {0, points.size(), tetrahedra.size()};
+  report = {0, points.size(), tetrahedra.size(), 0, 0};
   return tetrahedra;
 }
 

@@ -20,12 +20,17 @@ struct StampOptions {
   // then a crystal from a file is cut as the exact one is, watertight and without the slivers that Delaunay's rule,
   // taken literally, makes of rounding; it is Delaunay but for about that share of the radius.
   double tolerance = 1e-7;
+  // What is left open along a crystal's face repeats as the crystal does: it is filled once and copied. The same mesh
+  // without, only later.
+  bool copy_fill = true;
 };
 
 struct StampReport {
   std::size_t stamped = 0;     // tetrahedra taken from the pattern
   std::size_t open_atoms = 0;  // atoms that CGAL was given
-  std::size_t filled = 0;      // tetrahedra it added
+  std::size_t filled = 0;      // tetrahedra it added, copies included
+  std::size_t copied = 0;      // atoms that cells were copied to
+  std::size_t rounds = 0;      // times that stamps at the seam were taken back
 };
 
 // All Delaunay tetrahedra of the points with a circumsphere of at most options.largest_radius, ties between equal

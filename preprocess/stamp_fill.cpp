@@ -1,27 +1,27 @@
 #include "preprocess/stamp_fill.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "core/circumsphere.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/tet_mesh.h"
 #include "preprocess/canonical_tetrahedra.h"
 #include "preprocess/gather_polytopes.h"
+#include "preprocess/pull_polytope.h"
+#include "preprocess/stamp_seam.h"
 #include "preprocess/tetrahedralize.h"
 
 namespace atomesh {
 
 namespace {
 
-constexpr std::size_t items_per_range = 512;
-
-PolytopeTolerance tolerance_of(const StampedSample& sample) {
-  return {0.2 * sample.options().tolerance, sample.options().tolerance};
-}
+constexpr std::size_t copies_per_range = 4096;
+// Radii nearer to the largest than this are compared with it tetrahedron by tetrahedron, as carve() does: what
+// rounding says of one place need not be what it says of another.
+constexpr double same_radius = 1.0 + 1e-9;
 
 Tetrahedron global(const Tetrahedron& t, std::span<const Index> open) {
   return {open[t[0]], open[t[1]], open[t[2]], open[t[3]]};
@@ -121,10 +121,13 @@ std::vector<Missing> find_missing(const StampedSample& sample, const Blocks& blo
     const Tetrahedron t = canonical(global(tetrahedra[n], members));
     const auto corner = [&](int i) -> const Vec3& { return sample.points()[t[i]]; };
     const Sphere sphere = circumsphere(corner(0), corner(1), corner(2), corner(3));
-    if (!(sphere.radius <= sample.options().largest_radius) || blocks.of(sphere.center) != block) continue;
+    if (!(sphere.radius <= same_radius * sample.options().largest_radius) || blocks.of(sphere.center) != block)
+      continue;
     if (find_slivers({&t, 1}, sample.points(), tolerance)[0] != 0 || sample.in_one_polytope(t)) continue;
     const double inside = sphere.radius * (1.0 - tolerance.sphere);
-    if (sample.each_in_ball(sphere.center, inside, slots, [](Index) { return false; })) missing.push_back({t, sphere});
+    // Of the open points none is in it: those are the triangulation's.
+    const auto is_open = [&](Index p) { return std::binary_search(members.begin(), members.end(), p); };
+    if (sample.each_in_ball(sphere.center, inside, slots, is_open)) missing.push_back({t, sphere});
   }
   return missing;
 }
@@ -146,8 +149,19 @@ std::vector<Missing> find_missing(const StampedSample& sample, std::span<const I
 // Tetrahedra with one sphere are one polytope, for the sphere is empty: pairs (polytope, tetrahedron), ascending.
 std::vector<std::pair<Index, Index>> gather(const std::vector<Missing>& missing, double tolerance, double largest) {
   const double edge = 0.01 * largest;  // of the cells that centres are looked up in
-  std::unordered_multimap<std::uint64_t, Index> first_of;
+  std::unordered_multimap<std::uint64_t, Index> at;
   std::vector<std::pair<Index, Index>> members;
+  std::vector<Index> parent(missing.size());
+  std::iota(parent.begin(), parent.end(), Index{0});
+  const auto root = [&](Index n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  const auto join = [&](Index a, Index b) {
+    a = root(a);
+    b = root(b);
+    parent[std::max(a, b)] = std::min(a, b);
+  };
   for (std::size_t n = 0; n < missing.size(); ++n) {
     const Sphere& sphere = missing[n].sphere;
     const double near = tolerance * sphere.radius;
@@ -160,167 +174,189 @@ std::vector<std::pair<Index, Index>> gather(const std::vector<Missing>& missing,
       constexpr std::int64_t mask = (1 << 21) - 1;
       return static_cast<std::uint64_t>((a & mask) << 42 | (b & mask) << 21 | (c & mask));
     };
-    Index polytope = static_cast<Index>(n);
     for (std::int64_t a = cells[0][0]; a <= cells[0][1]; ++a) {
       for (std::int64_t b = cells[1][0]; b <= cells[1][1]; ++b) {
         for (std::int64_t c = cells[2][0]; c <= cells[2][1]; ++c) {
-          const auto [begin, end] = first_of.equal_range(key(a, b, c));
+          const auto [begin, end] = at.equal_range(key(a, b, c));
           for (auto other = begin; other != end; ++other) {
             const Sphere& s = missing[other->second].sphere;
             if (glm::distance(s.center, sphere.center) <= near && std::abs(s.radius - sphere.radius) <= near) {
-              polytope = std::min(polytope, other->second);
+              join(other->second, static_cast<Index>(n));
             }
           }
         }
       }
     }
-    if (polytope == n) {
-      const auto cell = [&](int k) { return static_cast<std::int64_t>(std::floor(sphere.center[k] / edge)); };
-      first_of.emplace(key(cell(0), cell(1), cell(2)), polytope);
-    }
-    members.emplace_back(polytope, static_cast<Index>(n));
+    const auto cell = [&](int k) { return static_cast<std::int64_t>(std::floor(sphere.center[k] / edge)); };
+    at.emplace(key(cell(0), cell(1), cell(2)), static_cast<Index>(n));
+  }
+  for (std::size_t n = 0; n < missing.size(); ++n) {
+    members.emplace_back(root(static_cast<Index>(n)), static_cast<Index>(n));
   }
   std::sort(members.begin(), members.end());
   return members;
 }
 
-std::vector<Index> ranks_by_height(std::span<const Vec3> points, const Vec3& direction) {
+// A missing cell and what it is cut into.
+struct Polytope {
+  std::vector<Index> corners;  // ascending
+  double radius = 0.0;
+  std::vector<Tetrahedron> tetrahedra;
+  bool same_anywhere = true;  // no two corners stand so nearly equally high that rounding decides how it is cut
+};
+
+// False for corners that span no volume.
+bool cut(const StampedSample& sample, Polytope& polytope) {
+  const std::size_t count = polytope.corners.size();
+  std::vector<Vec3> places;
   std::vector<std::pair<double, Index>> heights;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    heights.emplace_back(glm::dot(points[i], direction), static_cast<Index>(i));
+  std::vector<Index> local(count), rank(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    places.push_back(sample.points()[polytope.corners[c]]);
+    heights.emplace_back(glm::dot(places[c], sample.direction()), static_cast<Index>(c));
+    local[c] = static_cast<Index>(c);
   }
   std::sort(heights.begin(), heights.end());
-  std::vector<Index> rank(points.size());
-  for (std::size_t i = 0; i < heights.size(); ++i) rank[heights[i].second] = static_cast<Index>(i);
-  return rank;
+  const double clear = 4.0 * sample.options().tolerance * sample.options().largest_radius;
+  for (std::size_t c = 0; c < count; ++c) {
+    rank[heights[c].second] = static_cast<Index>(c);
+    if (c > 0 && heights[c].first - heights[c - 1].first < clear) polytope.same_anywhere = false;
+  }
+  polytope.tetrahedra.clear();
+  if (!pull_polytope(local, places, rank, sample.options().tolerance * polytope.radius, polytope.tetrahedra))
+    return false;
+  for (Tetrahedron& t : polytope.tetrahedra) {
+    for (Index& v : t) v = polytope.corners[v];
+  }
+  return true;
 }
 
-// A triangle rotated so that its smallest corner is first: two that look the same way are equal.
-Triangle rotated(const Triangle& t) {
-  if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1]) return {t[2], t[0], t[1]};
-  return t;
-}
-
-Triangle reversed(const Triangle& t) {
-  return {t[0], t[2], t[1]};
-}
-
-// Stamped triangles with nothing stamped behind and all corners open, ascending. Those with a closed corner have
-// nothing missing behind them.
-std::vector<Triangle> stamped_seam(const StampedSample& sample, const LatticeSites& sites,
-                                   std::span<const Index> open) {
-  std::vector<std::vector<Triangle>> parts((open.size() + items_per_range - 1) / items_per_range);
-  const auto is_open = [&](Index v) { return std::binary_search(open.begin(), open.end(), v); };
-  parallel_for(open.size(), items_per_range, [&](std::size_t begin, std::size_t end) {
-    std::vector<Triangle>& part = parts[begin / items_per_range];
-    for (std::size_t n = begin; n < end; ++n) {
-      const Index v = open[n];
-      const StampedPatch* patch = sample.patch_of(v);
-      if (patch == nullptr) continue;
-      patch->each_outside_face(sites.of[v], [&](const Triangle& t) {
-        if (*std::min_element(t.begin(), t.end()) == v && is_open(t[0]) && is_open(t[1]) && is_open(t[2])) {
-          part.push_back(rotated(t));
-        }
-        return true;
-      });
+// Polytopes that cannot be cut are in conflict with whatever is around them.
+std::vector<Polytope> find_polytopes(const StampedSample& sample, std::span<const Index> open,
+                                     std::vector<Index>& conflict, Progress& progress) {
+  const std::vector<Missing> missing = find_missing(sample, open, progress);
+  const auto members = gather(missing, tolerance_of(sample).sphere, sample.options().largest_radius);
+  progress.check();
+  std::vector<Polytope> polytopes;
+  for (std::size_t i = 0; i < members.size();) {
+    Polytope polytope;
+    polytope.radius = missing[members[i].second].sphere.radius;
+    const std::size_t first = i;
+    for (; i < members.size() && members[i].first == members[first].first; ++i) {
+      const Tetrahedron& t = missing[members[i].second].tetrahedron;
+      polytope.corners.insert(polytope.corners.end(), t.begin(), t.end());
     }
-  });
-  std::vector<Triangle> seam;
-  for (const auto& part : parts) seam.insert(seam.end(), part.begin(), part.end());
-  std::sort(seam.begin(), seam.end());
-  return seam;
+    std::sort(polytope.corners.begin(), polytope.corners.end());
+    polytope.corners.erase(std::unique(polytope.corners.begin(), polytope.corners.end()), polytope.corners.end());
+    if (i - first == 1) {
+      polytope.tetrahedra = {missing[members[first].second].tetrahedron};
+    } else if (!cut(sample, polytope)) {
+      conflict.insert(conflict.end(), polytope.corners.begin(), polytope.corners.end());
+      continue;
+    }
+    polytopes.push_back(std::move(polytope));
+  }
+  return polytopes;
 }
 
-// Whether a cell of at most the largest radius should lie behind a triangle, on the side its normal points to. Of the
-// spheres through the triangle's corners, what lies on that side in a smaller one lies in a larger one too, as long as
-// the centre moves to that side: it is enough to look into the largest.
-bool misses_cell(const StampedSample& sample, const Triangle& t, std::vector<Index>& slots) {
-  const auto points = sample.points();
+// Appends the tetrahedra of a polytope, without those that are too large.
+void add(const StampedSample& sample, double radius, std::span<const Tetrahedron> of, std::vector<Tetrahedron>& to) {
   const double largest = sample.options().largest_radius;
-  const Vec3 &a = points[t[0]], u = points[t[1]] - a, v = points[t[2]] - a;
-  const Vec3 normal = glm::cross(u, v);
-  const double area2 = glm::dot(normal, normal);
-  const Vec3 center = a + glm::cross(glm::dot(u, u) * v - glm::dot(v, v) * u, normal) * (0.5 / area2);
-  const double radius2 = glm::dot(center - a, center - a);
-  const double height = std::sqrt(std::max(largest * largest - radius2, 0.0)) * (1.0 - 1e-6);
-  const Vec3 up = normal / std::sqrt(area2);
-  const double flat = 10.0 * tolerance_of(sample).sphere * largest;
-  return !sample.each_in_ball(center + height * up, std::sqrt(radius2 + height * height), slots,
-                              [&](Index p) { return glm::dot(points[p] - a, up) <= flat; });
+  for (const Tetrahedron& t : of) {
+    if (radius * same_radius > largest) {
+      const auto& [a, b, c, d] = canonical(t);
+      const auto points = sample.points();
+      if (!(circumsphere(points[a], points[b], points[c], points[d]).radius <= largest)) continue;
+    }
+    to.push_back(t);
+  }
 }
 
-// Whether filled and stamped cells meet without gap or overlap: no triangle is seen twice from one side, and behind
-// each that is seen from one side only there is no cell to miss.
-bool fits(const StampedSample& sample, const std::vector<Triangle>& seam, const std::vector<Tetrahedron>& filled,
-          const std::vector<std::array<Index, 4>>& neighbours, Progress& progress) {
-  std::vector<std::uint8_t> met(seam.size(), 0);
-  std::vector<Triangle> alone;
-  const auto find = [&](const Triangle& t) {
-    const auto found = std::lower_bound(seam.begin(), seam.end(), t);
-    return found != seam.end() && *found == t ? static_cast<std::size_t>(found - seam.begin()) : seam.size();
-  };
-  for (std::size_t n = 0; n < filled.size(); ++n) {
-    for (int f = 0; f < 4; ++f) {
-      const auto& c = face_corners[f];
-      const Triangle t = rotated({filled[n][c[0]], filled[n][c[1]], filled[n][c[2]]});
-      if (find(t) != seam.size()) return false;
-      const std::size_t behind = find(reversed(t));
-      if (behind != seam.size()) {
-        if (neighbours[n][f] != no_index) return false;
-        met[behind] = 1;
-      } else if (neighbours[n][f] == no_index) {
-        alone.push_back(t);
+// The polytope at `from`, moved to `to`, when `to` is its lowest corner there. False when an atom is not where it
+// should be.
+bool copy(const StampedSample& sample, const Polytope& polytope, Index from, Index to, Polytope& moved,
+          std::vector<Tetrahedron>& tetrahedra) {
+  const LatticeSite &a = sample.site(from), &b = sample.site(to);
+  const Cell by{b.cell[0] - a.cell[0], b.cell[1] - a.cell[1], b.cell[2] - a.cell[2]};
+  const StampedPatch& patch = *sample.patch_of(to);
+  moved.corners.clear();
+  for (const Index v : polytope.corners) {
+    const Index w = v == from ? to : patch.atom(sample.site(v).cell + by, sample.site(v).basis);
+    if (w == no_index) return false;
+    if (w < to) return true;
+    moved.corners.push_back(w);
+  }
+  if (polytope.same_anywhere) {
+    moved.tetrahedra = polytope.tetrahedra;
+    for (Tetrahedron& t : moved.tetrahedra) {
+      for (Index& v : t) {
+        const auto corner = std::lower_bound(polytope.corners.begin(), polytope.corners.end(), v);
+        v = moved.corners[static_cast<std::size_t>(corner - polytope.corners.begin())];
       }
     }
+    add(sample, polytope.radius, moved.tetrahedra, tetrahedra);
+    return true;
   }
-  for (std::size_t s = 0; s < seam.size(); ++s) {
-    if (met[s] == 0) alone.push_back(seam[s]);
+  std::sort(moved.corners.begin(), moved.corners.end());
+  moved.radius = polytope.radius;
+  if (!cut(sample, moved)) return false;
+  add(sample, moved.radius, moved.tetrahedra, tetrahedra);
+  return true;
+}
+
+// Each polytope comes from its lowest corner: found there, or copied from that one's model.
+std::vector<Tetrahedron> spread(const StampedSample& sample, const OpenPoints& points,
+                                const std::vector<Polytope>& polytopes, std::vector<Index>& conflict,
+                                Progress& progress) {
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<std::pair<Index, Index>> at_models;  // (model, polytope)
+  for (std::size_t n = 0; n < polytopes.size(); ++n) {
+    const Polytope& polytope = polytopes[n];
+    const auto role = points.role[polytope.corners[0]];
+    if (role == OpenPoints::unique || role == OpenPoints::model) {
+      add(sample, polytope.radius, polytope.tetrahedra, tetrahedra);
+    }
+    for (const Index v : polytope.corners) {
+      if (points.role[v] == OpenPoints::model) at_models.emplace_back(v, static_cast<Index>(n));
+    }
   }
-  std::atomic<bool> whole{true};
-  parallel_for(alone.size(), items_per_range, [&](std::size_t begin, std::size_t end) {
+  std::sort(at_models.begin(), at_models.end());
+  struct Part {
+    std::vector<Tetrahedron> tetrahedra;
+    std::vector<Index> conflict;
+  };
+  const auto& copies = points.copies;
+  std::vector<Part> parts((copies.size() + copies_per_range - 1) / copies_per_range);
+  parallel_for(copies.size(), copies_per_range, [&](std::size_t begin, std::size_t end) {
     progress.check();
-    std::vector<Index> slots;
-    for (std::size_t n = begin; n < end && whole; ++n) {
-      if (misses_cell(sample, alone[n], slots)) whole = false;
+    Part& part = parts[begin / copies_per_range];
+    Polytope moved;
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto [model, to] = copies[n];
+      auto at = std::lower_bound(at_models.begin(), at_models.end(), std::pair<Index, Index>{model, 0});
+      for (; at != at_models.end() && at->first == model; ++at) {
+        if (!copy(sample, polytopes[at->second], model, to, moved, part.tetrahedra)) part.conflict.push_back(to);
+      }
     }
   });
-  return whole;
+  for (const Part& part : parts) {
+    tetrahedra.insert(tetrahedra.end(), part.tetrahedra.begin(), part.tetrahedra.end());
+    conflict.insert(conflict.end(), part.conflict.begin(), part.conflict.end());
+  }
+  return tetrahedra;
 }
 
 }  // namespace
 
-std::optional<std::vector<Tetrahedron>> fill_open(const StampedSample& sample, const LatticeSites& sites,
-                                                  std::span<const Index> open, Progress& progress) {
-  const PolytopeTolerance tolerance = tolerance_of(sample);
-  const std::vector<Missing> missing = find_missing(sample, open, progress);
-  const auto members = gather(missing, tolerance.sphere, sample.options().largest_radius);
-  progress.check();
-
-  // From here in the numbers of the open points alone.
-  TetMesh mesh;
-  for (const Index i : open) mesh.vertices.push_back(sample.points()[i]);
-  std::vector<Tetrahedron> pieces;
-  for (const Missing& m : missing) {
-    Tetrahedron local;
-    for (int i = 0; i < 4; ++i) {
-      local[i] = static_cast<Index>(std::lower_bound(open.begin(), open.end(), m.tetrahedron[i]) - open.begin());
-    }
-    pieces.push_back(local);
-  }
-  const std::vector<Index> rank = ranks_by_height(mesh.vertices, sample.direction());
-  if (!cut_polytopes(pieces, mesh.vertices, members, rank, tolerance, mesh.tetrahedra)) return std::nullopt;
-  progress.check();
-  std::vector<std::array<Index, 4>> neighbours;
-  try {
-    neighbours = face_neighbours(mesh);
-  } catch (const Error&) {
-    return std::nullopt;  // a face of three
-  }
-  std::vector<Tetrahedron> filled = std::move(mesh.tetrahedra);
-  for (Tetrahedron& t : filled) t = global(t, open);
-  if (!fits(sample, stamped_seam(sample, sites, open), filled, neighbours, progress)) return std::nullopt;
-  return filled;
+Filling fill_open(const StampedSample& sample, const OpenPoints& points, Progress& progress) {
+  Filling filling;
+  const std::vector<Polytope> polytopes = find_polytopes(sample, points.open, filling.conflict, progress);
+  filling.tetrahedra = spread(sample, points, polytopes, filling.conflict, progress);
+  const std::vector<Index> seam = seam_conflicts(sample, points, filling.tetrahedra, progress);
+  filling.conflict.insert(filling.conflict.end(), seam.begin(), seam.end());
+  std::sort(filling.conflict.begin(), filling.conflict.end());
+  filling.conflict.erase(std::unique(filling.conflict.begin(), filling.conflict.end()), filling.conflict.end());
+  return filling;
 }
 
 }  // namespace atomesh

@@ -24,18 +24,25 @@ Cell offset_cell(const SiteOffset& s) {
 
 std::optional<StampedPatch> StampedPatch::make(PatchPattern pattern, std::span<const Index> atoms,
                                                std::span<const Vec3> points, std::span<const LatticeSite> of,
-                                               std::vector<Index>& left_over) {
+                                               std::span<const std::uint8_t> exact, std::vector<Index>& left_over) {
   if (!pattern.usable() || atoms.empty()) return std::nullopt;
   StampedPatch patch(std::move(pattern), points);
   if (!patch.lay_bricks(atoms, of)) return std::nullopt;
   const std::size_t basis = patch.pattern_.basis();
   for (const Index i : atoms) {
-    Index& place = patch.atoms_[patch.slot(of[i].cell) * basis + of[i].basis];
-    if (place == no_index) {
-      place = i;
-    } else {
+    const std::size_t slot = patch.slot(of[i].cell);
+    Index& place = patch.atoms_[slot * basis + of[i].basis];
+    if (place != no_index) {
       left_over.push_back(i);
+      continue;
     }
+    place = i;
+    const std::size_t word = slot / cells_per_brick * basis + of[i].basis;
+    const std::uint64_t cell = std::uint64_t{1} << slot % cells_per_brick;
+    patch.occupied_[word] |= cell;
+    if (exact[i] != 0) continue;
+    patch.inexact_[word] |= cell;
+    patch.any_inexact_ = true;
   }
   return patch;
 }
@@ -95,7 +102,10 @@ bool StampedPatch::lay_bricks(std::span<const Index> atoms, std::span<const Latt
   }
   const std::size_t slots = first_cell_.size() * cells_per_brick;
   atoms_.assign(slots * pattern_.basis(), no_index);
-  state_.assign(slots * pattern_.polytopes().size(), State::open);
+  for (auto* words : {&occupied_, &inexact_}) words->assign(first_cell_.size() * pattern_.basis(), 0);
+  for (auto* words : {&whole_, &part_, &kept_clear_}) {
+    words->assign(first_cell_.size() * pattern_.polytopes().size(), 0);
+  }
   tetrahedra_.assign(first_cell_.size(), 0);
   return true;
 }
@@ -122,7 +132,8 @@ void StampedPatch::keep_clear_of(const Vec3& position) {
           if (s == nowhere) continue;
           const Vec3 d = pattern_.corner(cell) + polytope.center - position;
           if (glm::dot(d, d) > radius * radius) continue;
-          std::atomic_ref(state_[s * count + p]).store(State::kept_clear, std::memory_order_relaxed);
+          std::atomic_ref(kept_clear_[s / cells_per_brick * count + p])
+              .fetch_or(std::uint64_t{1} << s % cells_per_brick, std::memory_order_relaxed);
         }
       }
     }
@@ -182,21 +193,75 @@ std::pair<StampedPatch::State, std::size_t> StampedPatch::fit(Index number, cons
   return {&cut == &polytope.whole ? State::whole : State::part, cut.tetrahedra.size()};
 }
 
+std::uint64_t StampedPatch::window(const std::vector<std::uint64_t>& words, const Cell& first, std::size_t kind) const {
+  const std::size_t kinds = words.size() / first_cell_.size();
+  std::array<int, 3> from, past;  // brick, and cells left out of it
+  for (int k = 0; k < 3; ++k) {
+    from[k] = (first[k] - min_[k]) >> 2;
+    past[k] = (first[k] - min_[k]) & 3;
+  }
+  const auto word = [&](int a, int b, int c) -> std::uint64_t {
+    // Numbers below the first become huge ones.
+    const auto i = static_cast<std::uint32_t>(a), j = static_cast<std::uint32_t>(b), k = static_cast<std::uint32_t>(c);
+    if (i >= bricks_[0] || j >= bricks_[1] || k >= bricks_[2]) return 0;
+    const Index brick = brick_[(std::size_t{i} * bricks_[1] + j) * bricks_[2] + k];
+    return brick == no_index ? 0 : words[brick * kinds + kind];
+  };
+  // The last axis lies in groups of 4 bits, the second in groups of 16.
+  const std::uint64_t stay2 = 0x1111111111111111U * ((1U << (4 - past[2])) - 1U);
+  const std::uint64_t stay1 = 0x0001000100010001U * ((1U << (16 - 4 * past[1])) - 1U);
+  const auto row = [&](int a, int b) {
+    const std::uint64_t w = word(a, b, from[2]);
+    if (past[2] == 0) return w;
+    return (w >> past[2] & stay2) | (word(a, b, from[2] + 1) << (4 - past[2]) & ~stay2);
+  };
+  const auto plane = [&](int a) {
+    const std::uint64_t w = row(a, from[1]);
+    if (past[1] == 0) return w;
+    return (w >> 4 * past[1] & stay1) | (row(a, from[1] + 1) << (16 - 4 * past[1]) & ~stay1);
+  };
+  const std::uint64_t w = plane(from[0]);
+  if (past[0] == 0) return w;
+  return w >> 16 * past[0] | plane(from[0] + 1) << (64 - 16 * past[0]);
+}
+
+// All anchors of a brick at once where atoms are exact: each corner asks the cells that lie its offset away.
+std::size_t StampedPatch::stamp_brick(std::size_t brick, std::size_t number, double largest_radius, double tolerance) {
+  const PatternPolytope& polytope = pattern_.polytopes()[number];
+  const std::size_t word = brick * pattern_.polytopes().size() + number;
+  std::uint64_t all = ~kept_clear_[word], some = 0, off = 0;
+  for (const SiteOffset& s : polytope.corners) {
+    const std::uint64_t there = occupied(first_cell_[brick] + offset_cell(s), s.basis);
+    all &= there;
+    some |= there;
+  }
+  const bool can_be_certain = pattern_.certain(polytope, largest_radius, tolerance) > 0.0;
+  if (any_inexact_ && can_be_certain) {
+    for (const auto* sites : {&polytope.corners, &polytope.close}) {
+      for (const SiteOffset& s : *sites) off |= inexact(first_cell_[brick] + offset_cell(s), s.basis);
+    }
+  }
+  std::uint64_t whole = can_be_certain ? all & ~off : 0, part = 0;
+  std::size_t made = static_cast<std::size_t>(std::popcount(whole)) * polytope.whole.tetrahedra.size();
+  for (std::uint64_t rest = some & ~kept_clear_[word] & ~whole; rest != 0; rest &= rest - 1) {
+    const auto local = static_cast<std::size_t>(std::countr_zero(rest));
+    const auto [found, tetrahedra] = fit(static_cast<Index>(number), cell_of(brick, local), largest_radius, tolerance);
+    if (found == State::whole) whole |= std::uint64_t{1} << local;
+    if (found == State::part) part |= std::uint64_t{1} << local;
+    made += tetrahedra;
+  }
+  whole_[word] = whole;
+  part_[word] = part;
+  return made;
+}
+
 std::size_t StampedPatch::stamp(double largest_radius, double tolerance, Progress& progress) {
-  const auto& polytopes = pattern_.polytopes();
   parallel_for(first_cell_.size(), bricks_per_range, [&](std::size_t begin, std::size_t end) {
     progress.check();
     for (std::size_t brick = begin; brick < end; ++brick) {
       std::size_t made = 0;
-      for (std::size_t local = 0; local < cells_per_brick; ++local) {
-        const std::size_t s = brick * cells_per_brick + local;
-        for (std::size_t p = 0; p < polytopes.size(); ++p) {
-          State& state = state_[s * polytopes.size() + p];
-          if (state != State::open) continue;
-          const auto [found, tetrahedra] = fit(static_cast<Index>(p), cell_of(brick, local), largest_radius, tolerance);
-          state = found;
-          made += tetrahedra;
-        }
+      for (std::size_t p = 0; p < pattern_.polytopes().size(); ++p) {
+        made += stamp_brick(brick, p, largest_radius, tolerance);
       }
       tetrahedra_[brick] = made;
     }
@@ -204,6 +269,53 @@ std::size_t StampedPatch::stamp(double largest_radius, double tolerance, Progres
   total_ = 0;
   for (const std::size_t made : tetrahedra_) total_ += made;
   return total_;
+}
+
+void StampedPatch::unstamp(const LatticeSite& site) {
+  std::array<Index, pull_polytope_corners> corner;
+  for (const PatternCorner& c : pattern_.around(site.basis)) {
+    const Cell anchor = site.cell + c.cell;
+    const std::size_t s = slot(anchor);
+    if (s == nowhere) continue;
+    const std::size_t word = s / cells_per_brick * pattern_.polytopes().size() + c.polytope;
+    const std::uint64_t cell = std::uint64_t{1} << s % cells_per_brick;
+    if (((whole_[word] | part_[word]) & cell) != 0) {
+      const PatternPolytope& polytope = pattern_.polytopes()[c.polytope];
+      const std::size_t gone = cut_of(c.polytope, find_corners(polytope, anchor, corner.data())).tetrahedra.size();
+      tetrahedra_[s / cells_per_brick] -= gone;
+      total_ -= gone;
+    }
+    whole_[word] &= ~cell;
+    part_[word] &= ~cell;
+    kept_clear_[word] |= cell;
+  }
+  const std::size_t s = slot(site.cell);
+  inexact_[s / cells_per_brick * pattern_.basis() + site.basis] |= std::uint64_t{1} << s % cells_per_brick;
+  any_inexact_ = true;
+}
+
+std::vector<Index> StampedPatch::edge(Progress& progress) const {
+  std::vector<std::vector<Index>> parts((first_cell_.size() + bricks_per_range - 1) / bricks_per_range);
+  parallel_for(first_cell_.size(), bricks_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    std::vector<Index>& part = parts[begin / bricks_per_range];
+    for (std::size_t brick = begin; brick < end; ++brick) {
+      for (std::size_t b = 0; b < pattern_.basis(); ++b) {
+        const std::uint64_t here = occupied_[brick * pattern_.basis() + b];
+        if (here == 0) continue;
+        std::uint64_t inner = ~std::uint64_t{0};
+        for (const PatternCorner& c : pattern_.around(b))
+          inner &= window(whole_, first_cell_[brick] + c.cell, c.polytope);
+        for (std::uint64_t rest = here & ~inner; rest != 0; rest &= rest - 1) {
+          const auto local = static_cast<std::size_t>(std::countr_zero(rest));
+          part.push_back(atoms_[(brick * cells_per_brick + local) * pattern_.basis() + b]);
+        }
+      }
+    }
+  });
+  std::vector<Index> result;
+  for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
+  return result;
 }
 
 void StampedPatch::write(std::span<Tetrahedron> tetrahedra, Progress& progress) const {
@@ -216,11 +328,10 @@ void StampedPatch::write(std::span<Tetrahedron> tetrahedra, Progress& progress) 
     for (std::size_t brick = begin; brick < end; ++brick) {
       std::size_t next = first[brick];
       for (std::size_t local = 0; local < cells_per_brick; ++local) {
-        const std::size_t s = brick * cells_per_brick + local;
         const Cell anchor = cell_of(brick, local);
         for (std::size_t p = 0; p < polytopes.size(); ++p) {
-          const State state = state_[s * polytopes.size() + p];
-          if (state != State::whole && state != State::part) continue;
+          const std::size_t word = brick * polytopes.size() + p;
+          if (((whole_[word] | part_[word]) >> local & 1) == 0) continue;
           const std::uint64_t occupied = find_corners(polytopes[p], anchor, corner.data());
           for (const auto& t : cut_of(static_cast<Index>(p), occupied).tetrahedra) {
             tetrahedra[next++] = {corner[t[0]], corner[t[1]], corner[t[2]], corner[t[3]]};
@@ -229,13 +340,6 @@ void StampedPatch::write(std::span<Tetrahedron> tetrahedra, Progress& progress) 
       }
     }
   });
-}
-
-bool StampedPatch::whole(const LatticeSite& site) const {
-  for (const PatternCorner& c : pattern_.around(site.basis)) {
-    if (state(site.cell + c.cell, c.polytope) != State::whole) return false;
-  }
-  return true;
 }
 
 bool StampedPatch::any_stamped(const LatticeSite& site) const {
@@ -260,7 +364,7 @@ std::vector<Triangle> StampedPatch::outside_faces(const LatticeSite& site) const
       if (face[0] != c.corner && face[1] != c.corner && face[2] != c.corner) continue;
       if (is_whole) {
         const PatternNeighbour& behind = polytope.neighbours[f];
-        if (state(anchor + behind.cell, behind.polytope) == State::whole) continue;
+        if (whole(anchor + behind.cell, behind.polytope)) continue;
       }
       seen.push_back({corner[face[0]], corner[face[1]], corner[face[2]]});
     }

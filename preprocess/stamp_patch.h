@@ -29,11 +29,11 @@ inline Cell operator+(const Cell& a, const Cell& b) {
 class StampedPatch {
  public:
   // `atoms`: the patch's atoms that are in place. Those that find their site taken are handed back in `left_over`.
-  // `points` and `of` are the whole sample's and must outlive this. Nothing when the patch is so scattered that even
-  // its bricks' bounds would not fit.
+  // `points`, `of` and `exact` (1: the atom is so near its site that it cannot be told from it) are the whole sample's
+  // and points must outlive this. Nothing when the patch is so scattered that even its bricks' bounds would not fit.
   static std::optional<StampedPatch> make(PatchPattern pattern, std::span<const Index> atoms,
                                           std::span<const Vec3> points, std::span<const LatticeSite> of,
-                                          std::vector<Index>& left_over);
+                                          std::span<const std::uint8_t> exact, std::vector<Index>& left_over);
 
   const PatchPattern& pattern() const { return pattern_; }
   // no_index where no atom is in place.
@@ -50,8 +50,21 @@ class StampedPatch {
   // Writes them.
   void write(std::span<Tetrahedron> tetrahedra, Progress& progress) const;
 
-  // Whether every polytope around an atom is stamped whole.
-  bool whole(const LatticeSite& site) const;
+  // Takes back what is stamped at an atom, and counts it as not exact.
+  void unstamp(const LatticeSite& site);
+
+  // The atoms around which not every polytope is stamped whole, brick by brick.
+  std::vector<Index> edge(Progress& progress) const;
+  // A bit for each of the 4×4×4 cells from `first` on: local number n (see cell_of) is n-th. Which have an atom on this
+  // basis site, and which one that is off it.
+  std::uint64_t occupied(const Cell& first, std::size_t basis) const { return window(occupied_, first, basis); }
+  std::uint64_t inexact(const Cell& first, std::size_t basis) const {
+    return any_inexact_ ? window(inexact_, first, basis) : 0;
+  }
+  static Cell local_cell(std::size_t local) {
+    const auto n = static_cast<int>(local);
+    return {n >> 4, n >> 2 & 3, n & 3};
+  }
   bool any_stamped(const LatticeSite& site) const;
   // Whether the sites, all of this patch, are corners of one stamped polytope.
   bool in_one_polytope(std::span<const LatticeSite> sites) const;
@@ -68,7 +81,7 @@ class StampedPatch {
 
  private:
   // `part`: some corners are empty, and what the others span is stamped.
-  enum class State : std::uint8_t { open, whole, part, kept_clear };
+  enum class State : std::uint8_t { open, whole, part };
   // What polytopes with empty corners are cut into, kept for the next with the same.
   struct Cuts {
     std::mutex lock;
@@ -89,18 +102,21 @@ class StampedPatch {
     if (brick == no_index) return nowhere;
     return brick * cells_per_brick + ((i & 3) << 4 | (j & 3) << 2 | (k & 3));
   }
-  Cell cell_of(std::size_t brick, std::size_t local) const {
-    const auto n = static_cast<int>(local);
-    return first_cell_[brick] + Cell{n >> 4, n >> 2 & 3, n & 3};
+  Cell cell_of(std::size_t brick, std::size_t local) const { return first_cell_[brick] + local_cell(local); }
+  // What a word holds of one cell: bits are kept [brick][kind], one for each cell.
+  bool bit(const std::vector<std::uint64_t>& words, const Cell& cell, std::size_t kind) const {
+    const std::size_t s = slot(cell);
+    if (s == nowhere) return false;
+    const std::size_t kinds = words.size() / first_cell_.size();
+    return (words[(s / cells_per_brick) * kinds + kind] >> (s % cells_per_brick) & 1) != 0;
   }
-  State state(const Cell& anchor, std::size_t polytope) const {
-    const std::size_t s = slot(anchor);
-    return s == nowhere ? State::open : state_[s * pattern_.polytopes().size() + polytope];
-  }
+  // The bits of the 4×4×4 cells from `first` on.
+  std::uint64_t window(const std::vector<std::uint64_t>& words, const Cell& first, std::size_t kind) const;
+  bool whole(const Cell& anchor, std::size_t polytope) const { return bit(whole_, anchor, polytope); }
   bool stamped(const Cell& anchor, std::size_t polytope) const {
-    const State s = state(anchor, polytope);
-    return s == State::whole || s == State::part;
+    return whole(anchor, polytope) || bit(part_, anchor, polytope);
   }
+  std::size_t stamp_brick(std::size_t brick, std::size_t polytope, double largest_radius, double tolerance);
   // The atoms at a polytope's corners, no_index where there is none; returns which there are, a bit each. Stops when
   // fewer than four can be left.
   std::uint64_t find_corners(const PatternPolytope& polytope, const Cell& anchor, Index* corner) const;
@@ -116,9 +132,11 @@ class StampedPatch {
   std::vector<Index> brick_;               // of each place in the bounds, no_index: none
   std::vector<Cell> first_cell_;           // of each brick
   std::vector<Index> atoms_;               // [brick][cell][basis]
-  std::vector<State> state_;               // [brick][cell][polytope]
-  std::vector<std::size_t> tetrahedra_;    // stamped in each brick
-  std::size_t total_ = 0;                  // in all
+  bool any_inexact_ = false;
+  std::vector<std::uint64_t> occupied_, inexact_;         // [brick][basis]
+  std::vector<std::uint64_t> whole_, part_, kept_clear_;  // [brick][polytope]
+  std::vector<std::size_t> tetrahedra_;                   // stamped in each brick
+  std::size_t total_ = 0;                                 // in all
   std::unique_ptr<Cuts> cuts_ = std::make_unique<Cuts>();
 };
 

@@ -65,6 +65,21 @@ PatchPattern::PatchPattern(const LatticeTemplate& pattern, const LatticePatch& p
   if (usable_) find_close_sites();
 }
 
+double PatchPattern::certain(const PatternPolytope& polytope, double largest_radius, double tolerance) const {
+  const double room = std::min({tolerance * polytope.radius - polytope.spread, largest_radius - polytope.radius,
+                                0.5 * (polytope.gap - tolerance * polytope.radius), in_place_});
+  return room > 0.0 ? 0.5 * room / polytope.steep : 0.0;
+}
+
+double PatchPattern::exact(double largest_radius, double tolerance) const {
+  double least = 0.0;
+  for (const PatternPolytope& polytope : polytopes_) {
+    const double off = certain(polytope, largest_radius, tolerance);
+    if (off > 0.0 && (least == 0.0 || off < least)) least = off;
+  }
+  return least;
+}
+
 double PatchPattern::nearest_neighbour() const {
   double nearest = glm::length(matrix_[0]);
   for (std::size_t a = 0; a < fractional_.size(); ++a) {
@@ -123,6 +138,16 @@ bool PatchPattern::place_spheres() {
     polytope.center = sphere.center;
     polytope.center_fraction = inverse_ * sphere.center;
     polytope.radius = sphere.radius;
+    // Distances to the centre that change by up to d move it by (edges)⁻¹ · (up to 2 d × radius each).
+    const Mat3 edges =
+        glm::transpose(Mat3(corner(f[1]) - corner(f[0]), corner(f[2]) - corner(f[0]), corner(f[3]) - corner(f[0])));
+    const Mat3 inverse = glm::inverse(edges);
+    const double norm = std::sqrt(glm::dot(inverse[0], inverse[0]) + glm::dot(inverse[1], inverse[1]) +
+                                  glm::dot(inverse[2], inverse[2]));
+    polytope.steep = 2.0 + 4.0 * std::sqrt(3.0) * norm * sphere.radius;
+    for (std::size_t c = 0; c < polytope.corners.size(); ++c) {
+      polytope.spread = std::max(polytope.spread, std::abs(glm::distance(corner(c), sphere.center) - sphere.radius));
+    }
     largest_void_ = std::max(largest_void_, polytope.radius);
   }
   return true;
@@ -185,6 +210,7 @@ void PatchPattern::for_cells(const Vec3& fraction, double radius, Body&& body) c
 void PatchPattern::find_close_sites() {
   for (PatternPolytope& polytope : polytopes_) {
     const double reach = polytope.radius + close_slack * in_place_;
+    polytope.gap = close_slack * in_place_;
     for (std::size_t b = 0; b < fractional_.size(); ++b) {
       for_cells(inverse_ * polytope.center - fractional_[b], reach, [&](const std::array<int, 3>& cell) {
         const Vec3 p = matrix_ * (Vec3(cell[0], cell[1], cell[2]) + fractional_[b]);
@@ -193,6 +219,7 @@ void PatchPattern::find_close_sites() {
             {static_cast<std::int8_t>(cell[0]), static_cast<std::int8_t>(cell[1]), static_cast<std::int8_t>(cell[2])},
             static_cast<std::uint16_t>(b)};
         if (std::find(polytope.corners.begin(), polytope.corners.end(), s) == polytope.corners.end()) {
+          polytope.gap = std::min(polytope.gap, glm::distance(p, polytope.center) - polytope.radius);
           polytope.close.push_back(s);
         }
       });

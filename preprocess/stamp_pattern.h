@@ -33,6 +33,12 @@ struct PatternPolytope {
   double radius = 0.0;
   // Other sites so near the sphere that atoms in place might lie in it.
   std::vector<SiteOffset> close;
+
+  // Corners off their sites by up to 1 Å, to first order, leave the sphere of the frame by up to `steep` Å, and are
+  // `spread` Å off it where they are exactly on their sites.
+  double steep = 0.0;
+  double spread = 0.0;
+  double gap = 0.0;  // Å from the sphere to the nearest other site, which is outside
 };
 
 // A basis atom of cell (0, 0, 0) is corner number `corner` of polytope `polytope` anchored at `cell`.
@@ -58,6 +64,12 @@ class PatchPattern {
   // Å within which an atom is in place: well below the distances that decide which polytopes there are and how they are
   // cut.
   double in_place() const { return in_place_; }
+  // Å by which atoms may be off their sites so that a polytope of theirs, if nothing foreign is near, is certain to be
+  // a Delaunay cell: no corner off the sphere by more than `tolerance` × its radius, no other site in it, the radius up
+  // to `largest_radius`. 0 where that is never certain.
+  double certain(const PatternPolytope& polytope, double largest_radius, double tolerance) const;
+  // The least of these that is not 0; 0 if all are.
+  double exact(double largest_radius, double tolerance) const;
   Vec3 position(const std::array<int, 3>& cell, std::size_t basis) const {
     return origin_ + matrix_ * (Vec3(cell[0], cell[1], cell[2]) + fractional_[basis]);
   }

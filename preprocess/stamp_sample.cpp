@@ -1,6 +1,7 @@
 #include "preprocess/stamp_sample.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -40,10 +41,14 @@ void StampedSample::find_direction() {
 void StampedSample::make_patches(Progress& progress) {
   const std::size_t count = sites_.patches.size();
   std::vector<PatchPattern> patterns;
+  std::vector<double> exact_within;
   for (const LatticePatch& patch : sites_.patches) {
     patterns.emplace_back(sites_.patterns[patch.pattern], patch, direction_);
+    const double within = patterns.back().exact(options_.largest_radius, options_.tolerance);
+    exact_within.push_back(within > 0.0 ? within : -1.0);
     progress.check();
   }
+  std::vector<std::uint8_t> exact(points_.size(), 0);
   parallel_for(points_.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const LatticeSite& site = sites_.of[i];
@@ -51,6 +56,10 @@ void StampedSample::make_patches(Progress& progress) {
       const PatchPattern& pattern = patterns[site.patch];
       const Vec3 off = points_[i] - pattern.position(site.cell, site.basis);
       in_place_[i] = glm::dot(off, off) <= pattern.in_place() * pattern.in_place() ? 1 : 0;
+      exact[i] = glm::dot(off, off) <=
+                         std::copysign(exact_within[site.patch] * exact_within[site.patch], exact_within[site.patch])
+                     ? 1
+                     : 0;
     }
   });
   // The atoms in place, patch by patch.
@@ -69,7 +78,7 @@ void StampedSample::make_patches(Progress& progress) {
   std::vector<Index> left_over;
   for (std::size_t p = 0; p < count; ++p) {
     const std::span<const Index> own(atoms.data() + first[p], first[p + 1] - first[p]);
-    auto patch = StampedPatch::make(std::move(patterns[p]), own, points_, sites_.of, left_over);
+    auto patch = StampedPatch::make(std::move(patterns[p]), own, points_, sites_.of, exact, left_over);
     if (patch) {
       patches_[p] = std::make_unique<StampedPatch>(std::move(*patch));
     } else {
@@ -83,7 +92,11 @@ void StampedSample::make_patches(Progress& progress) {
     loose_.push_back(static_cast<Index>(i));
     places.push_back(points_[i]);
   }
-  loose_grid_ = std::make_unique<NeighbourGrid>(places, Box{}, 2.0 * options_.largest_radius, options_.largest_radius);
+  double farthest = 2.0 * options_.largest_radius;
+  for (const auto& patch : patches_) {
+    if (patch) farthest = std::max(farthest, sphere_of_influence(patch->pattern()) + patch->pattern().in_place());
+  }
+  loose_grid_ = std::make_unique<NeighbourGrid>(places, Box{}, farthest, options_.largest_radius);
 }
 
 // From each patch's polytopes, whatever is no atom in place of its own.
@@ -121,6 +134,25 @@ bool StampedSample::in_one_polytope(const Tetrahedron& tetrahedron) const {
   return patch(tetrahedron[0])->in_one_polytope(sites);
 }
 
+void StampedSample::unstamp(std::span<const Index> points, double radius) {
+  std::vector<Index> slots;
+  for (auto& patch : patches_) {
+    if (!patch) continue;
+    std::vector<Index> near;
+    for (const Index p : points) {
+      patch->each_in_ball(points_[p], radius, [&](Index i) {
+        near.push_back(i);
+        return true;
+      });
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    tetrahedra_ -= patch->tetrahedra();
+    for (const Index i : near) patch->unstamp(sites_.of[i]);
+    tetrahedra_ += patch->tetrahedra();
+  }
+}
+
 // Which points can be corners of a cell that is missing, that is a Delaunay cell of radius at most R that is not
 // stamped? Call a point *on the edge* when the stamped polytopes around it do not fill its surroundings: a missing cell
 // has only such corners. A point v on the edge is *closed*, no corner of a missing cell, when it has stamped polytopes
@@ -134,35 +166,54 @@ bool StampedSample::in_one_polytope(const Tetrahedron& tetrahedron) const {
 // some triangle, above H; one of that triangle's corners is above H, on the edge, and within 2 × (2 × radius) of v,
 // which was excluded. So every triangle that bounds S at v lies in a plane that supports K: near v, S has no boundary
 // inside K and fills it. Q, which lies in K, would overlap S; Delaunay cells do not.
-std::vector<Index> StampedSample::open_points(Progress& progress) const {
-  std::vector<std::uint8_t> on_edge(points_.size(), 0);
-  parallel_for(points_.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
-    progress.check();
-    for (std::size_t i = begin; i < end; ++i) {
-      on_edge[i] = in_place_[i] == 0 || !patch(static_cast<Index>(i))->whole(sites_.of[i]) ? 1 : 0;
-    }
-  });
+OpenPoints StampedSample::open_points(Progress& progress) const {
+  // Patch by patch, and last those in none.
   std::vector<Index> edge;
-  std::vector<Vec3> places;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (on_edge[i] == 0) continue;
-    edge.push_back(static_cast<Index>(i));
-    places.push_back(points_[i]);
+  std::vector<std::size_t> first;
+  for (const auto& patch : patches_) {
+    first.push_back(edge.size());
+    if (!patch) continue;
+    const std::vector<Index> own = patch->edge(progress);
+    edge.insert(edge.end(), own.begin(), own.end());
   }
+  first.push_back(edge.size());
+  edge.insert(edge.end(), loose_.begin(), loose_.end());
+  OpenPoints result;
+  result.role.assign(points_.size(), OpenPoints::none);
+  for (const Index i : edge) result.role[i] = OpenPoints::unique;
+  if (options_.copy_fill) find_copies(edge, first, result, progress);
+
+  std::vector<Vec3> places;
+  for (const Index i : edge) places.push_back(points_[i]);
   const NeighbourGrid grid(places, Box{}, reach(), 0.5 * reach());
-  std::vector<std::uint8_t> closed(edge.size(), 0);
+  // Corners of cells at those whose cells are to be found.
+  std::vector<std::uint8_t> asked(edge.size(), result.copies.empty() ? 1 : 0);
+  if (!result.copies.empty()) {
+    const double far = 2.0 * options_.largest_radius * (1.0 + 1e-6);
+    parallel_for(edge.size(), points_per_range / 8, [&](std::size_t begin, std::size_t end) {
+      progress.check();
+      std::vector<Index> slots;
+      for (std::size_t n = begin; n < end; ++n) {
+        if (result.role[edge[n]] == OpenPoints::copy) continue;
+        grid.find(points_[edge[n]], far, slots);
+        for (const Index slot : slots) {
+          std::atomic_ref(asked[grid.point(slot)]).store(1, std::memory_order_relaxed);
+        }
+      }
+    });
+  }
   parallel_for(edge.size(), points_per_range / 8, [&](std::size_t begin, std::size_t end) {
     progress.check();
     std::vector<Index> slots;
     for (std::size_t n = begin; n < end; ++n) {
-      closed[n] = in_place_[edge[n]] != 0 && is_closed(edge[n], grid, slots) ? 1 : 0;
+      if (asked[n] != 0 && in_place_[edge[n]] != 0 && is_closed(edge[n], grid, slots)) asked[n] = 0;
     }
   });
-  std::vector<Index> open;
   for (std::size_t n = 0; n < edge.size(); ++n) {
-    if (closed[n] == 0) open.push_back(edge[n]);
+    if (asked[n] != 0) result.open.push_back(edge[n]);
   }
-  return open;
+  std::sort(result.open.begin(), result.open.end());
+  return result;
 }
 
 double StampedSample::reach() const {

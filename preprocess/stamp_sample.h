@@ -10,6 +10,20 @@
 
 namespace atomesh {
 
+// The points that may be corners of a Delaunay cell (of radius up to largest_radius) that is not stamped.
+struct OpenPoints {
+  enum Role : std::uint8_t {
+    none,    // no corner of any
+    unique,  // all its cells are to be found
+    model,   // so are this one's, and then they are moved to its copies
+    copy,    // the lattice around is its model's, moved
+  };
+  std::vector<Role> role;                       // of each point
+  std::vector<std::pair<Index, Index>> copies;  // (model, copy)
+  // The corners of all cells at unique ones and models, ascending, and now and then a few more.
+  std::vector<Index> open;
+};
+
 class StampedSample {
  public:
   // Stamps all patches. `points` and `sites` must outlive this.
@@ -24,14 +38,15 @@ class StampedSample {
   // All stamped tetrahedra, patch by patch; `tetrahedra` as long as stamped().
   void write(std::span<Tetrahedron> tetrahedra, Progress& progress) const;
 
-  // The corners of every Delaunay cell (of radius up to largest_radius) that is not stamped, ascending, and now and
-  // then a few more.
-  std::vector<Index> open_points(Progress& progress) const;
+  OpenPoints open_points(Progress& progress) const;
+  // Takes back what is stamped at these points, and at those within `radius` of them.
+  void unstamp(std::span<const Index> points, double radius);
 
   // The atom's patch, or nullptr when it is not in place in any.
   const StampedPatch* patch_of(Index atom) const { return in_place_[atom] != 0 ? patch(atom) : nullptr; }
   // Whether the points are corners of one stamped polytope.
   bool in_one_polytope(const Tetrahedron& tetrahedron) const;
+  const LatticeSite& site(Index point) const { return sites_.of[point]; }
   // Calls body(point) for all points within `radius` of a place; stops and returns false when body does. `slots` is
   // scratch space.
   template <class Body>
@@ -43,6 +58,11 @@ class StampedSample {
   void make_patches(Progress& progress);
   void keep_clear(Progress& progress);
   double reach() const;
+  // Within this of an atom, all that decides which cells it has and which of them are stamped.
+  double sphere_of_influence(const PatchPattern& pattern) const;
+  // Fills in role and copies for the points on the edge.
+  void find_copies(std::span<const Index> edge, std::span<const std::size_t> first, OpenPoints& result,
+                   Progress& progress) const;
   bool is_closed(Index atom, const NeighbourGrid& edge, std::vector<Index>& slots) const;
 
   std::span<const Vec3> points_;

@@ -8,6 +8,7 @@
 #include "core/circumsphere.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "preprocess/canonical_tetrahedra.h"
 #include "preprocess/carve.h"
 #include "preprocess/gather_polytopes.h"
 #include "preprocess/stamp_delaunay.h"
@@ -318,6 +319,56 @@ TEST(StampDelaunay, DisplacementsOfEverySize) {
     }
   }
   EXPECT_GT(stamped, 10000u);
+}
+
+// What is filled once and copied along faces, edges and from vacancy to vacancy is what would be found at each place.
+TEST(StampDelaunay, CopiesAreWhatWouldBeFound) {
+  std::size_t copied = 0, open = 0, open_without = 0;
+  for (const Lattice& l : crystals()) {
+    const UnitCell cell = turned(l.cell);
+    const Vec3 odd(0.37, -0.81, 0.45);
+    std::vector<std::vector<Vec3>> shapes{
+        block(l, 26.0).positions, cut_sphere(cell, 13.0).positions,
+        cut_where(cell, Vec3(13.0), [&](const Vec3& p) { return glm::dot(p, odd) < 4.0; }).positions};
+    Atoms holes = block(l, 26.0);
+    for (const Vec3& p : {Vec3(6.0), Vec3(13.0, 12.0, 14.0), Vec3(19.0, 18.0, 7.0)}) remove_nearest(holes, p);
+    holes.positions[holes.size() / 2] += Vec3(0.1, 0.2, 0.1);
+    shapes.push_back(holes.positions);
+    transform(holes, odd_rotation());
+    shapes.push_back(holes.positions);
+    for (std::size_t n = 0; n < shapes.size(); ++n) {
+      const bool is_turned = n == 1 || n == 2 || n == 4;
+      const Placed placed = place(shapes[n], {{is_turned ? cell : l.cell}});
+      StampReport with, without;
+      auto a = stamp_delaunay(placed.points, placed.sites, {radius_of(l), 1e-7, true}, with);
+      auto b = stamp_delaunay(placed.points, placed.sites, {radius_of(l), 1e-7, false}, without);
+      put_in_canonical_order(a, placed.points.size());
+      put_in_canonical_order(b, placed.points.size());
+      EXPECT_EQ(a, b) << l.name << " " << n;
+      EXPECT_EQ(with.stamped, without.stamped) << l.name << " " << n;
+      EXPECT_EQ(without.copied, 0u);
+      copied += with.copied;
+      open += with.open_atoms;
+      open_without += without.open_atoms;
+    }
+  }
+  EXPECT_GT(copied, 1000u);
+  EXPECT_LT(open, open_without);
+}
+
+// A face's interior costs no more however far it stretches.
+TEST(StampDelaunay, OpenAtomsDoNotGrowWithTheFaces) {
+  for (const char* name : {"diamond", "bcc"}) {
+    const Lattice& l = lattice(name);
+    std::vector<std::size_t> open;
+    for (const double edge : {50.0, 60.0}) {
+      const Placed placed = place(block(l, edge).positions, {{l.cell}});
+      StampReport report;
+      stamp_delaunay(placed.points, placed.sites, {radius_of(l)}, report);
+      open.push_back(report.open_atoms);
+    }
+    EXPECT_EQ(open[0], open[1]) << name;
+  }
 }
 
 // Patterns that hold nothing to stamp are no reason to leave anything out.
