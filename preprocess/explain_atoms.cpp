@@ -192,13 +192,13 @@ class BlockWork {
 
 }  // namespace
 
-std::uint64_t AtomBlocks::key_of(const Place& place) {
+std::uint64_t StrainBlocks::key_of(const Place& place) {
   std::uint64_t key = 0;
   for (int k = 0; k < 3; ++k) key = key << 21 | (static_cast<std::uint64_t>(place[k] + 1) & 0x1FFFFF);
   return key;
 }
 
-AtomBlocks::AtomBlocks(const Atoms& atoms, double edge) {
+StrainBlocks::StrainBlocks(const Atoms& atoms, double edge) {
   const Bounds bounds = bounds_of(atoms.positions);
   // A whole number of blocks along each axis, so that none at the borders is a sliver. Keys have 21 bits an axis; a
   // sample with a stray atom far away gets wider blocks rather than none.
@@ -260,7 +260,7 @@ AtomBlocks::AtomBlocks(const Atoms& atoms, double edge) {
   });
 }
 
-void AtomBlocks::neighbours(std::size_t block, std::vector<std::size_t>& around) const {
+void StrainBlocks::neighbours(std::size_t block, std::vector<std::size_t>& around) const {
   around.clear();
   for (int n = 0; n < 27; ++n) {
     if (n == 13) continue;
@@ -284,7 +284,7 @@ void Explained::add(const Explained& other) {
   }
 }
 
-Claims explain_atoms(const Atoms& atoms, const AtomBlocks& blocks, const FittedCell& cell,
+Claims explain_atoms(const Atoms& atoms, const StrainBlocks& blocks, const FittedCell& cell,
                      const std::vector<std::uint8_t>& other, const std::vector<std::uint16_t>& grain_of,
                      Progress& progress) {
   Claims claims;

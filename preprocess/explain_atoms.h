@@ -13,10 +13,10 @@ namespace atomesh {
 
 // The atoms sorted into cubic blocks small enough that strain hardly adds up within one. Memory: 4 bytes an atom and a
 // few for each block that holds atoms.
-class AtomBlocks {
+class StrainBlocks {
  public:
   // `edge` Å, about.
-  AtomBlocks(const Atoms& atoms, double edge);
+  StrainBlocks(const Atoms& atoms, double edge);
 
   std::size_t size() const { return places_.size(); }
   // Ascending x, then y, z: the same for any order of the atoms.
@@ -61,7 +61,7 @@ struct Claims {
 // sites of a site; atoms that this leaves, and blocks that have none, go with the origins of the blocks beside them.
 // Species that the cell lacks have no say. Blocks that `other` marks (empty: none) belong to another grain: only their
 // atoms that are no_grain in `grain_of` are asked, by the origins beside.
-Claims explain_atoms(const Atoms& atoms, const AtomBlocks& blocks, const FittedCell& cell,
+Claims explain_atoms(const Atoms& atoms, const StrainBlocks& blocks, const FittedCell& cell,
                      const std::vector<std::uint8_t>& other, const std::vector<std::uint16_t>& grain_of,
                      Progress& progress);
 

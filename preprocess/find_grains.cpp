@@ -22,7 +22,7 @@ constexpr std::size_t least_left = 10;
 
 class GrainFinder {
  public:
-  GrainFinder(const Atoms& atoms, const AtomBlocks& blocks, const LocalScale& scale, const FittedCell& first,
+  GrainFinder(const Atoms& atoms, const StrainBlocks& blocks, const LocalScale& scale, const FittedCell& first,
               const Claims& claims, std::size_t least)
       : atoms_(atoms), blocks_(blocks), scale_(scale), first_(first), least_(least), shells_(first) {
     grain_of_.assign(atoms.size(), no_grain);
@@ -241,7 +241,7 @@ class GrainFinder {
   }
 
   const Atoms& atoms_;
-  const AtomBlocks& blocks_;
+  const StrainBlocks& blocks_;
   const LocalScale& scale_;
   const FittedCell& first_;
   std::size_t least_;
@@ -256,8 +256,8 @@ class GrainFinder {
 
 }  // namespace
 
-GrainSearch find_grains(const Atoms& atoms, const AtomBlocks& blocks, const LocalScale& scale, const FittedCell& first,
-                        const Claims& claims, std::size_t least, Progress& progress) {
+GrainSearch find_grains(const Atoms& atoms, const StrainBlocks& blocks, const LocalScale& scale,
+                        const FittedCell& first, const Claims& claims, std::size_t least, Progress& progress) {
   GrainFinder finder(atoms, blocks, scale, first, claims, least);
   finder.find_all(progress);
   return finder.result(progress);

@@ -23,7 +23,7 @@ struct GrainSearch {
 // grain of fewer than `least` atoms is none. An atom that several grains claim goes with the one that claims most of
 // its neighbours (the layers that a twin shares with its parent); one that none claims goes with its neighbours where
 // they agree (an interstitial) and belongs to no grain where they do not.
-GrainSearch find_grains(const Atoms& atoms, const AtomBlocks& blocks, const LocalScale& scale, const FittedCell& first,
-                        const Claims& claims, std::size_t least, Progress& progress);
+GrainSearch find_grains(const Atoms& atoms, const StrainBlocks& blocks, const LocalScale& scale,
+                        const FittedCell& first, const Claims& claims, std::size_t least, Progress& progress);
 
 }  // namespace atomesh

@@ -137,7 +137,7 @@ bool revise_sites(Candidate& candidate) {
 }
 
 // The cell that is typical of the blocks, unless the atoms are clearly farther from its sites.
-void take_typical(const Atoms& atoms, const AtomBlocks& blocks, Candidate& candidate, Progress& progress) {
+void take_typical(const Atoms& atoms, const StrainBlocks& blocks, Candidate& candidate, Progress& progress) {
   const auto typical = typical_cell(atoms, blocks, candidate.cell, candidate.claims, progress);
   if (!typical) return;
   Claims claims = explain_atoms(atoms, blocks, *typical, {}, {}, progress);
@@ -192,7 +192,7 @@ UnitCell to_unit_cell(const Atoms& atoms, const FittedCell& cell) {
 // Candidates from several places: one may lie in a defect, a void, a strained part. Short translations are looked for
 // everywhere before longer ones are anywhere.
 std::optional<Candidate> best_candidate(const Atoms& atoms, const FindCellOptions& options,
-                                        std::optional<AtomBlocks>& blocks, Trials& trials, Progress& progress) {
+                                        std::optional<StrainBlocks>& blocks, Trials& trials, Progress& progress) {
   struct Place {
     Vec3 center;
     LocalScale scale;
@@ -283,7 +283,7 @@ Crystal find_unit_cell(const Atoms& atoms, const FindCellOptions& options, FindC
     return {};
   }
 
-  std::optional<AtomBlocks> blocks;
+  std::optional<StrainBlocks> blocks;
   Trials trials;
   std::optional<Candidate> best = best_candidate(atoms, options, blocks, trials, progress);
   const double count = static_cast<double>(atoms.size());

@@ -112,7 +112,7 @@ Deformed deformed(const Atoms& atoms, std::span<const Index> block, const Fitted
 
 }  // namespace
 
-std::optional<FittedCell> typical_cell(const Atoms& atoms, const AtomBlocks& blocks, const FittedCell& cell,
+std::optional<FittedCell> typical_cell(const Atoms& atoms, const StrainBlocks& blocks, const FittedCell& cell,
                                        const Claims& claims, Progress& progress) {
   std::vector<std::size_t> asked;
   for (std::size_t b = 0; b < blocks.size(); ++b) {

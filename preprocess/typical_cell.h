@@ -11,7 +11,7 @@ namespace atomesh {
 // is deformed in it; the median over the blocks is what most of the crystal has, whatever a dot, a crack or a
 // dislocation does to the rest, and so for the sites. Nothing where the fit is the better measure: the blocks
 // differ by noise alone, or the fit saw most of the sample and the median does not differ from it beyond doubt.
-std::optional<FittedCell> typical_cell(const Atoms& atoms, const AtomBlocks& blocks, const FittedCell& cell,
+std::optional<FittedCell> typical_cell(const Atoms& atoms, const StrainBlocks& blocks, const FittedCell& cell,
                                        const Claims& claims, Progress& progress);
 
 }  // namespace atomesh
