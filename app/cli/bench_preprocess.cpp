@@ -50,10 +50,14 @@ void bench_preprocess(const PreprocessBenchOptions& options, Session& session, B
     session.print_text(result.text(first));  // minutes before the last part is done
   }
   BenchTable requirements = result.requirements();
-  requirements.caption +=
-      fmt::format(" {}. Commit {}. Made by `atomesh bench preprocess`.", machine_name(), build_commit());
+  requirements.caption += fmt::format(
+      " Numerical hard cases and the answer to a cancel are tests. {}. Commit {}. Made by `atomesh bench "
+      "preprocess{}`.",
+      machine_name(), build_commit(), options.full ? " --full" : "");
   result.tables.push_back(std::move(requirements));
   session.print_text(result.text(result.tables.size() - 1));
+  // Who reads the file wants the outcome first.
+  std::rotate(result.tables.begin(), result.tables.end() - 1, result.tables.end());
 }
 
 }  // namespace atomesh::cli

@@ -47,11 +47,21 @@ double worst_parameter_error(const UnitCell& found, const UnitCell& true_cell, d
   return worst;
 }
 
-class CellTable {
- public:
-  explicit CellTable(const PreprocessBench& bench) : bench_(bench) {}
+// How one search went, as a table says it.
+struct Outcome {
+  bool right = false;
+  std::string error;  // "0.0012 %", of the worst lattice parameter; "NOT FOUND", "WRONG"
+  std::string group;  // "225 Fm-3m"
+  std::string explained;
+  double ms = 0.0;
+};
 
-  void measure_crystal(const Known& known) {
+class CellSearch {
+ public:
+  explicit CellSearch(const PreprocessBench& bench) : bench_(bench) {}
+
+  Outcome measure_crystal(const Known& known) {
+    Outcome outcome;
     FindCellReport report;
     Crystal crystal;
     const Times times = measure(
@@ -65,22 +75,19 @@ class CellTable {
                 {"found", crystal.known()},
                 {"explained", report.explained}};
     ++asked_;
-    std::string group;
-    std::string error;
     std::string verdict;
     if (crystal.known()) {
       const UnitCell& cell = crystal.grains.front();
       const double tolerance = 0.03 * nearest_neighbour_distance(cell);  // above what thermal noise leaves in a mean
       const auto space_group = find_space_group(cell, tolerance);
-      group = space_group ? fmt::format("{} {}", space_group->number, space_group->symbol) : "none";
+      outcome.group = space_group ? fmt::format("{} {}", space_group->number, space_group->symbol) : "none";
       row.more.emplace_back("space_group", space_group ? space_group->number : 0);
-      bool right = true;
       if (known.cell) {
         const double worst = worst_parameter_error(cell, *known.cell, tolerance);
         row.max_error = 0.01 * worst;
         worst_ = std::max(worst_, worst);
-        error = fmt::format("{:.4f} %", worst);
-        right = worst <= parameter_limit;
+        outcome.error = fmt::format("{:.4f} %", worst);
+        if (worst > parameter_limit) verdict += "lattice parameters; ";
       }
       if (known.primitive_atoms > 0 && known.primitive_atoms != cell.basis.size()) {
         verdict += fmt::format("{} atoms in the cell, not {}; ", cell.basis.size(), known.primitive_atoms);
@@ -88,38 +95,40 @@ class CellTable {
       if (known.space_group > 0 && (!space_group || space_group->number != known.space_group)) {
         verdict += fmt::format("group {} was expected; ", known.space_group);
       }
-      right = right && verdict.empty();
+      outcome.right = verdict.empty();
       row.more.emplace_back("basis", cell.basis.size());
-      row.more.emplace_back("right", right);
-      right_ += right ? 1 : 0;
+      if (!outcome.right) outcome.error = "WRONG";
     } else {
       verdict = report.why;
-      row.more.emplace_back("right", false);
+      outcome.error = "NOT FOUND";
     }
+    row.more.emplace_back("right", outcome.right);
     bench_.result.add(std::move(row));
-    table_.row({known.name, crystal.known() ? "yes" : "NO", fmt::format("{:.2f} %", 100.0 * report.explained),
-                crystal.known() ? std::to_string(crystal.grains.front().basis.size()) : "", group, error,
-                milliseconds(times.median), verdict});
+    right_ += outcome.right ? 1 : 0;
+    if (!outcome.right) remarks_ += fmt::format(" {}: {}.", known.name, verdict);
+    outcome.explained = fmt::format("{:.2f} %", 100.0 * report.explained);
+    outcome.ms = times.median;
+    return outcome;
   }
 
-  void finish(const std::string& title) {
+  // The requirements, and the table that the outcomes were put into.
+  void finish(const std::string& title, TextTable table, const std::string& caption) {
     BenchRow row{"preprocess", title, "find_unit_cell", Json::object(), "", {}, {}, {}, {}};
-    row.requirements = {
-        {"find_unit_cell: found, cell and space group right", static_cast<double>(asked_), true,
-         static_cast<double>(right_), ""},
-        {"find_unit_cell: worst lattice parameter of those found", parameter_limit, false, worst_, " %"}};
+    row.requirements = {{"find_unit_cell: cell and space group right, of " + title, static_cast<double>(asked_), true,
+                         static_cast<double>(right_), ""},
+                        {"find_unit_cell: worst lattice parameter", parameter_limit, false, worst_, " %"}};
     bench_.result.add(std::move(row));
-    bench_.result.tables.push_back({title, std::move(table_),
-                                    fmt::format("{} of {} found with the right cell (lattice parameters to {} %).",
-                                                right_, asked_, parameter_limit)});
+    bench_.result.tables.push_back({"Unit cells: " + title, std::move(table),
+                                    fmt::format("{} {} of {} found with the right cell (lattice parameters to {} %).{}",
+                                                caption, right_, asked_, parameter_limit, remarks_)});
   }
 
  private:
   const PreprocessBench& bench_;
   std::size_t asked_ = 0;
   std::size_t right_ = 0;
-  double worst_ = 0.0;  // %, of the lattice parameters found
-  TextTable table_{{"crystal", "found", "explained", "basis", "space group", "worst parameter", "ms", "remark"}};
+  double worst_ = 0.0;   // %, of the lattice parameters found
+  std::string remarks_;  // on those that are not right
 };
 
 Known planted(const PreprocessBench& bench, const StructureType& type, double noise, double vacancies, bool rotated) {
@@ -140,25 +149,51 @@ Known planted(const PreprocessBench& bench, const StructureType& type, double no
 }  // namespace
 
 void bench_find_unit_cell(const PreprocessBench& bench) {
-  CellTable common(bench);
+  struct Condition {
+    const char* heading;
+    double noise, vacancies;
+    bool rotated;
+  };
+  std::vector<Condition> conditions{{"perfect", 0.0, 0.0, false},
+                                    {"turned, 1 % noise, 1 % vacancies", 0.01, 0.01, true},
+                                    {"turned, 3 % noise, 2 % vacancies", 0.03, 0.02, true}};
+  if (bench.options.full) conditions.push_back({"turned, 5 % noise", 0.05, 0.0, true});
+  std::vector<std::string> headings{"structure", "space group"};
+  for (const Condition& condition : conditions) headings.emplace_back(condition.heading);
+  headings.emplace_back("ms, the slowest");
+  TextTable table(headings);
+  CellSearch common(bench);
   for (const StructureType& type : structure_types()) {
-    common.measure_crystal(planted(bench, type, 0.0, 0.0, false));
-    common.measure_crystal(planted(bench, type, 0.01, 0.01, true));
-    common.measure_crystal(planted(bench, type, 0.03, 0.02, true));
-    if (bench.options.full) common.measure_crystal(planted(bench, type, 0.05, 0.0, true));
+    std::vector<std::string> cells{fmt::format("{} ({})", type.name, type.material),
+                                   fmt::format("{} {}", type.space_group, type.symbol)};
+    double slowest = 0.0;
+    for (const auto& [heading, noise, vacancies, rotated] : conditions) {
+      const Outcome outcome = common.measure_crystal(planted(bench, type, noise, vacancies, rotated));
+      cells.push_back(outcome.error);
+      slowest = std::max(slowest, outcome.ms);
+    }
+    cells.push_back(milliseconds(slowest));
+    table.row(std::move(cells));
   }
-  common.finish("Unit cells of the common structures");
+  common.finish(
+      "common structures", std::move(table),
+      fmt::format("From {} atoms alone: the error of the worst lattice parameter.", grouped(bench.atoms(20000))));
 
   if (bench.atoms(20000) < 10000) return;  // the samples need more to show what they are
-  CellTable samples(bench);
+  CellSearch samples(bench);
+  TextTable ten({"sample", "atoms", "space group found", "worst parameter", "atoms on its sites", "ms"});
   for (const SampleInfo& info : sample_table()) {
     const std::size_t atoms =
         bench.options.atoms == 0 ? info.seed_atoms : std::max<std::size_t>(bench.options.atoms, 20000);
     Sample sample = make_sample(info.name, {.atoms = atoms}, bench.session.progress());
     if (!sample.unit_cell) sample.unit_cell = zinc_blende_cell("Si", "Si", silicon_edge);
-    samples.measure_crystal({std::string(info.name), std::move(sample.atoms), sample.unit_cell, 0, 0});
+    const std::size_t count = sample.atoms.size();
+    const Outcome outcome =
+        samples.measure_crystal({std::string(info.name), std::move(sample.atoms), sample.unit_cell, 0, 0});
+    ten.row({std::string(info.name), grouped(count), outcome.group, outcome.error, outcome.explained,
+             milliseconds(outcome.ms)});
   }
-  samples.finish("Unit cells of the ten samples");
+  samples.finish("the ten samples", std::move(ten), "From the atoms alone.");
 }
 
 }  // namespace atomesh::cli

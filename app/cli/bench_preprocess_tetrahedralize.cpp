@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "app/cli/bench_preprocess.h"
 #include "core/circumsphere.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/predicates.h"
-#include "preprocess/canonical_tetrahedra.h"
 #include "preprocess/tetrahedralize.h"
 #include "preprocess/tetrahedralize_cgal.h"
-#include "preprocess/tetrahedralize_pattern.h"
 #include "samples/planted_crystal.h"
 
 namespace atomesh::cli {
@@ -35,7 +32,7 @@ constexpr Variant variants[] = {
     {"perfect", true, 0, 0, unchanged},
     {"vacancies", true, 20, 0, unchanged},
     {"interstitials", true, 0, 20, unchanged},
-    {"rotated", true, 0, 0, [](PlantedCrystalOptions& o) { o.rotation = 1; }},
+    {"turned", true, 0, 0, [](PlantedCrystalOptions& o) { o.rotation = 1; }},
     {"sphere", true, 0, 0, [](PlantedCrystalOptions& o) { o.shape = PlantedShape::sphere; }},
     {"1 % noise", false, 0, 0, [](PlantedCrystalOptions& o) { o.noise = 0.01; }},
 };
@@ -67,36 +64,6 @@ double deepest_in_sphere(const TetMesh& mesh) {
   return *std::max_element(deepest.begin(), deepest.end());
 }
 
-// Atoms whose cell is known → mesh, by the pattern. `steps` says how long each of its steps took.
-TetMesh mesh_by_pattern(const Sample& sample, TetrahedralizeReport& report, std::string& steps, Session& session) {
-  const auto timed = [&](const char* step, auto&& work) {
-    const Times times = measure(1, session, step, work, 0);
-    steps += fmt::format("{}{} {}", steps.empty() ? "" : ", ", step, milliseconds(times.median));
-  };
-  steps.clear();
-  Progress& progress = session.progress();
-  Crystal crystal;
-  crystal.grains = {*sample.unit_cell};
-  LatticeSites sites;
-  PatternReport pattern;
-  TetMesh mesh;
-  timed("sites", [&] { sites = assign_lattice_sites(sample.atoms, crystal, {}, progress); });
-  timed("pattern", [&] {
-    mesh.vertices = sample.atoms.positions;
-    mesh.tetrahedra = tetrahedralize_pattern(mesh.vertices, std::move(sites), {}, pattern, progress);
-  });
-  if (!pattern.done) throw UnavailableError(pattern.why);
-  timed("order", [&] {
-    mesh.vertex_atom.resize(mesh.vertices.size());
-    std::iota(mesh.vertex_atom.begin(), mesh.vertex_atom.end(), Index{0});
-    put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size());
-  });
-  mesh.delaunay = pattern.delaunay;
-  report.mesher = "pattern";
-  report.why = pattern.why;
-  return mesh;
-}
-
 struct Measured {
   Times times;
   std::size_t tetrahedra = 0;
@@ -104,11 +71,11 @@ struct Measured {
   double bytes_each() const { return tetrahedra > 0 ? bytes / static_cast<double>(tetrahedra) : 0.0; }
 };
 
+// One crystal, every mesher; one line of the table.
 class Case {
  public:
-  Case(const PreprocessBench& bench, TextTable& table, const std::string& structure, const Variant& variant,
-       std::size_t atoms)
-      : bench_(bench), table_(table), variant_(variant) {
+  Case(const PreprocessBench& bench, const std::string& structure, const Variant& variant, std::size_t atoms)
+      : bench_(bench), variant_(variant) {
     PlantedCrystalOptions options;
     options.structure = structure;
     options.atoms = atoms;
@@ -118,16 +85,35 @@ class Case {
     options.interstitials = std::min(most, variant.interstitials);
     bench.session.progress().stage("grow " + structure);
     sample_ = make_planted_crystal(options, bench.session.progress());
+    crystal_.grains = {*sample_.unit_cell};
     const std::size_t defects = options.vacancies + options.interstitials;
     name_ = fmt::format("{}, {}{}, {} atoms", structure, defects > 0 ? std::to_string(defects) + " " : "", variant.name,
                         grouped(sample_.atoms.size()));
   }
 
-  void run(bool tetgen) {
+  // Cells in the order of `headings`.
+  std::vector<std::string> run(bool delaunay, bool tetgen) {
     measure_stock();
-    for (const char* mesher : {"pattern", "delaunay", "tetgen"}) {
-      if (std::string_view(mesher) != "tetgen" || tetgen) measure_ours(mesher);
+    std::vector<std::string> cells{name_, milliseconds(stock_.times.median)};
+    std::vector<std::string> behind{fmt::format("{:.0f}", stock_.bytes_each())};
+    measure_ours("pattern", cells, behind);
+    if (delaunay) {
+      measure_ours("delaunay", cells, behind);
+    } else {
+      cells.emplace_back();
     }
+    if (tetgen) {
+      measure_ours("tetgen", cells, behind);
+    } else {
+      cells.emplace_back();
+    }
+    cells.insert(cells.end(), behind.begin(), behind.end());
+    return cells;
+  }
+
+  static std::vector<std::string> headings() {
+    return {"crystal",     "CGAL, ms",       "pattern, ms", "× CGAL",  "delaunay, ms", "TetGen, ms",
+            "CGAL, B/tet", "pattern, B/tet", "tetrahedra",  "stamped", "mesh"};
   }
 
  private:
@@ -140,30 +126,26 @@ class Case {
     BenchRow row = make_row("CGAL Delaunay_triangulation_3", stock_, 1);
     row.peer = "CGAL";
     bench_.result.add(std::move(row));
-    table_.row({name_, "CGAL", milliseconds(stock_.times.median), milliseconds(stock_.times.cpu), "1",
-                grouped(stock_.tetrahedra), fmt::format("{:.0f}", stock_.bytes_each()), "", "", ""});
   }
 
-  void measure_ours(const std::string& mesher) {
-    TetrahedralizeOptions options;
-    options.mesher = mesher;
+  // Times go to `cells`; what else there is to say of the pattern's mesh to `behind`, the columns after all times.
+  void measure_ours(const std::string& mesher, std::vector<std::string>& cells, std::vector<std::string>& behind) {
+    const bool pattern = mesher == "pattern";
     TetrahedralizeReport report;
-    std::string steps;  // of the pattern, ms
     TetMesh mesh;
     Measured ours;
     try {
       const PeakMemory memory;
       ours.times = measure(
-          mesher == "tetgen" ? 1 : bench_.options.repeats, bench_.session, name_ + ": " + mesher,
+          pattern ? bench_.options.repeats : 1, bench_.session, name_ + ": " + mesher,
           [&] {
             mesh = {};
-            mesh = mesher == "pattern" ? mesh_by_pattern(sample_, report, steps, bench_.session)
-                                       : tetrahedralize(sample_.atoms, options, report, bench_.session.progress());
+            mesh = tetrahedralize(sample_.atoms, crystal_, 0.0, {.mesher = mesher}, report, bench_.session.progress());
           },
           0);
       ours.bytes = memory.grown();
-    } catch (const UnavailableError& error) {
-      table_.row({name_, mesher, "-", "-", "-", "-", "-", error.what(), "", ""});
+    } catch (const UnavailableError&) {
+      cells.emplace_back("not built in");
       return;
     }
     ours.tetrahedra = mesh.tetrahedra.size();
@@ -173,26 +155,33 @@ class Case {
     const bool delaunay = mesh.delaunay && valid && deepest <= delaunay_tolerance;
     const double ratio = stock_.times.median / ours.times.median;
 
-    BenchRow row = make_row(mesher, ours, mesher == "pattern" ? threads() : 1);
+    BenchRow row = make_row(mesher, ours, pattern ? threads() : 1);
     row.peer = "CGAL";
     row.max_error = deepest;
     row.more.insert(row.more.end(), {{"peer_ms", stock_.times.median},
                                      {"ratio", ratio},
-                                     {"steps_ms", steps.empty() ? Json() : Json(steps)},
                                      {"cpu_ratio", stock_.times.cpu / ours.times.cpu},
+                                     {"mesher", report.mesher},
+                                     {"why", report.why},
                                      {"valid", valid},
                                      {"delaunay", delaunay}});
-    std::string required;
-    if (mesher == "pattern" && variant_.required && sample_.atoms.size() > smallest_required) {
-      row.requirements.push_back({"pattern: times CGAL's sequential Delaunay", 20.0, true, ratio, "×"});
-      row.requirements.push_back({"pattern: peak bytes a tetrahedron", 64.0, false, ours.bytes_each(), ""});
-      required = row.requirements[0].text() + "; " + row.requirements[1].text();
+    cells.push_back(milliseconds(ours.times.median));
+    if (pattern) {
+      const double stamped = static_cast<double>(report.pattern.stamped) / static_cast<double>(ours.tetrahedra);
+      row.more.emplace_back("stamped", stamped);
+      if (variant_.required && sample_.atoms.size() > smallest_required) {
+        row.requirements.push_back({"tetrahedralize: times CGAL's sequential Delaunay", 20.0, true, ratio, "×"});
+        row.requirements.push_back({"tetrahedralize: peak bytes a tetrahedron", 64.0, false, ours.bytes_each(), " B"});
+      }
+      cells.push_back(fmt::format("{:.1f}", ratio));
+      const std::string sound = !valid ? "NOT VALID" : delaunay ? "Delaunay" : "valid";
+      behind.insert(behind.end(), {fmt::format("{:.0f}", ours.bytes_each()), grouped(ours.tetrahedra),
+                                   fmt::format("{:.1f} %", 100.0 * stamped),
+                                   sound + (report.mesher == "pattern" ? "" : ", by " + report.mesher)});
+    } else if (!valid) {
+      cells.back() += ", NOT VALID";
     }
     bench_.result.add(std::move(row));
-    const std::string soundness = !valid ? "NOT VALID" : delaunay ? "valid, Delaunay" : "valid, not Delaunay";
-    table_.row({name_, report.mesher, milliseconds(ours.times.median), milliseconds(ours.times.cpu),
-                short_number(ratio), grouped(ours.tetrahedra), fmt::format("{:.0f}", ours.bytes_each()), soundness,
-                steps, required});
   }
 
   BenchRow make_row(const std::string& what, const Measured& measured, int cores) const {
@@ -209,9 +198,9 @@ class Case {
   }
 
   const PreprocessBench& bench_;
-  TextTable& table_;
   const Variant& variant_;
   Sample sample_;
+  Crystal crystal_;
   std::string name_;
   Measured stock_;
 };
@@ -219,28 +208,40 @@ class Case {
 }  // namespace
 
 void bench_tetrahedralize(const PreprocessBench& bench) {
-  TextTable table(
-      {"crystal", "mesher", "ms", "CPU ms", "times CGAL", "tetrahedra", "peak B/tet", "mesh", "steps, ms", "required"});
+  TextTable table(Case::headings());
   std::vector<std::size_t> sizes{bench.atoms(200000)};
-  if (bench.options.full && bench.options.atoms == 0) sizes.push_back(1000000);
+  if (bench.options.atoms == 0) {
+    if (bench.options.full) {
+      sizes.push_back(1000000);
+    } else {
+      bench.result.not_measured("tetrahedralize: the same, 1,000,000 atoms", "--full");
+    }
+  }
   const bool small = sizes[0] <= 50000;
   for (const std::size_t atoms : sizes) {
-    for (const char* structure : {"rock-salt", "fcc", "diamond"}) {
+    for (const char* structure : {"rock-salt", "fcc", "bcc", "diamond"}) {
       for (const Variant& variant : variants) {
         // CGAL needs seconds for each: by default every variant of one structure, and of the others the two that
         // matter most.
         const bool first = std::string_view(structure) == "rock-salt";
+        const bool perfect = &variant == variants;
         const bool usual = first || &variant - variants < 2;
         if (!bench.options.full && !usual) continue;
-        const bool tetgen = bench.options.full || small || (first && &variant == variants);
-        Case(bench, table, structure, variant, atoms).run(tetgen);
+        // A million atoms take CGAL half a minute: there every structure's perfect and its defective crystal.
+        if (atoms > 500000 && &variant - variants >= 2) continue;
+        const bool peers = small || (bench.options.full && atoms < 500000);
+        table.row(Case(bench, structure, variant, atoms).run(perfect || peers, (first && perfect) || peers));
       }
     }
   }
   bench.result.tables.push_back(
       {"Tetrahedralization", std::move(table),
-       "CGAL: Delaunay_triangulation_3 over EPICK from a range, sequential, points to triangulation. The others: atoms "
-       "to TetMesh, everything included. Bytes: the most memory held beyond the atoms, by tetrahedron of the result."});
+       fmt::format("Wall clock, once each (pattern: median of {}). CGAL: Delaunay_triangulation_3 over EPICK from a "
+                   "range, one thread, points to triangulation. The others are --mesher pattern ({} threads; the unit "
+                   "cell known), delaunay and tetgen: atoms to finished mesh. B/tet: the most memory held beyond the "
+                   "atoms, by tetrahedron of the result. Stamped: share of the pattern's tetrahedra that needed no "
+                   "triangulation. Empty: not run.",
+                   bench.options.repeats, threads())});
 }
 
 }  // namespace atomesh::cli

@@ -91,17 +91,45 @@ Json BenchResult::json() const {
   return Json::object({{"machine", machine_name()}, {"commit", build_commit()}, {"rows", rows_}});
 }
 
+void BenchResult::not_measured(std::string what, std::string option) {
+  unmeasured_.emplace_back(std::move(what), std::move(option));
+}
+
 BenchTable BenchResult::requirements() const {
-  BenchTable result{"Requirements", TextTable({"case", "what", "required", "measured", "met"}), ""};
-  std::size_t met = 0;
+  struct Line {
+    const Requirement* worst;
+    const std::string* where;
+    std::size_t met = 0, cases = 0;
+  };
+  std::vector<Line> lines;
   for (const auto& [name, requirement] : required_) {
-    met += requirement.met() ? 1 : 0;
-    result.table.row({name, requirement.what,
-                      fmt::format("{} {}{}", requirement.at_least ? "at least" : "at most",
-                                  short_number(requirement.target), requirement.unit),
-                      short_number(requirement.measured) + requirement.unit, requirement.met() ? "yes" : "NO"});
+    auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
+      return l.worst->what == requirement.what && l.worst->target == requirement.target;
+    });
+    if (line == lines.end()) line = lines.insert(line, Line{&requirement, &name});
+    ++line->cases;
+    line->met += requirement.met() ? 1 : 0;
+    const bool worse = requirement.at_least ? requirement.measured < line->worst->measured
+                                            : requirement.measured > line->worst->measured;
+    if (worse) {
+      line->worst = &requirement;
+      line->where = &name;
+    }
   }
-  result.caption = fmt::format("{} of {} met.", met, required_.size());
+  BenchTable result{"Requirements", TextTable({"what", "required", "worst", "where", "cases met", "met"}), ""};
+  std::size_t met = 0;
+  for (const Line& line : lines) {
+    const Requirement& worst = *line.worst;
+    const bool all = line.met == line.cases;
+    met += all ? 1 : 0;
+    result.table.row(
+        {worst.what,
+         fmt::format("{} {}{}", worst.at_least ? "at least" : "at most", short_number(worst.target), worst.unit),
+         short_number(worst.measured) + worst.unit, *line.where, fmt::format("{} of {}", line.met, line.cases),
+         all ? "yes" : "NO"});
+  }
+  for (const auto& [what, option] : unmeasured_) result.table.row({what, "", "", "", "", "not measured: " + option});
+  result.caption = fmt::format("{} of {} met.", met, lines.size());
   return result;
 }
 
@@ -119,7 +147,7 @@ std::string BenchResult::text(std::size_t first) const {
 std::string BenchResult::markdown() const {
   std::string out;
   for (const BenchTable& table : tables) {
-    if (!table.title.empty()) out += "## " + table.title + "\n\n";
+    if (!table.title.empty()) out += "#### " + table.title + "\n\n";
     out += table.table.markdown();
     if (!table.caption.empty()) out += "\n" + table.caption + "\n";
     out += "\n";

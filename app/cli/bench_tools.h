@@ -80,7 +80,7 @@ class TemporaryFolder {
 
 // Something that must hold: "required at least 20×: 43×, met".
 struct Requirement {
-  std::string what;  // "times CGAL's sequential Delaunay"
+  std::string what;  // "tetrahedralize: times CGAL's sequential Delaunay"; the same for every case of one requirement
   double target = 0.0;
   bool at_least = true;  // else at most
   double measured = 0.0;
@@ -116,7 +116,10 @@ class BenchResult {
   void add(BenchRow row);
   // {machine, commit, rows}.
   Json json() const;
-  // Every requirement of every row, in one table: what, required, measured, met.
+  // A requirement that this run leaves out, and the option that takes it in.
+  void not_measured(std::string what, std::string option);
+  // One line for each requirement, in the order they came: how many cases there were of it, the worst, and whether it
+  // is met, which it is when every case meets it.
   BenchTable requirements() const;
   bool has_requirements() const { return !required_.empty(); }
   // Of the tables from the `first` on.
@@ -125,7 +128,8 @@ class BenchResult {
 
  private:
   Json rows_ = Json::array();
-  std::vector<std::pair<std::string, Requirement>> required_;  // by case
+  std::vector<std::pair<std::string, Requirement>> required_;    // by case
+  std::vector<std::pair<std::string, std::string>> unmeasured_;  // what, option
 };
 
 // About three significant digits: "0.042", "8.31", "1,234".

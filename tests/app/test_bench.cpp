@@ -64,7 +64,7 @@ TEST_F(Bench, MeshersAreSoundAndBesideCgal) {
   EXPECT_TRUE(meshers.contains("tetrahedralize: CGAL Delaunay_triangulation_3"));
   EXPECT_TRUE(meshers.contains("tetrahedralize: delaunay"));
   EXPECT_TRUE(meshers.contains("tetrahedralize: pattern"));
-  EXPECT_NE(place.read("bench.md").find("| crystal | mesher |"), std::string::npos);
+  EXPECT_NE(place.read("bench.md").find("| crystal | CGAL, ms |"), std::string::npos);
 }
 
 TEST_F(Bench, DefectValuesAreTimedOnOneCoreAndOnAll) {
@@ -105,7 +105,10 @@ TEST_F(Bench, AFileIsTimedStageByStage) {
     EXPECT_TRUE(stages.contains(stage)) << stage;
   }
   EXPECT_GT(all[0]["memory_mb"], 1.0);
-  EXPECT_EQ(all[1]["suite"], "seed-table");
+  EXPECT_EQ(all[0]["unit_cell"], "file");
+  EXPECT_EQ(all[1]["unit_cell"], "found");
+  EXPECT_LT(all[2]["tetrahedra"], all[0]["tetrahedra"]);  // simplified
+  EXPECT_EQ(all[3]["suite"], "seed-table");
 }
 
 TEST_F(Bench, PlantedTruthIsFound) {
