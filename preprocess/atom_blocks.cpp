@@ -6,23 +6,41 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace atomesh {
 
 namespace {
 
 constexpr std::int64_t most_blocks = std::int64_t{1} << 20;  // along one axis, so that three numbers fit one key
+constexpr std::size_t atoms_per_range = 1 << 14;
 
 }  // namespace
 
 AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge, const Progress& progress) : edge_(edge) {
-  Bounds bounds;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec3& p = positions[i];
-    if (!std::isfinite(p.x + p.y + p.z)) {
-      throw Error("atom " + std::to_string(i + 1) + " has a position that is not finite");
+  const std::size_t ranges = (positions.size() + atoms_per_range - 1) / atoms_per_range;
+  std::vector<Bounds> bounds_of_range(ranges);
+  std::vector<std::size_t> not_finite(ranges, positions.size());  // the first of each range
+  parallel_for(positions.size(), atoms_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    Bounds own;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& p = positions[i];
+      if (!std::isfinite(p.x + p.y + p.z)) {
+        not_finite[begin / atoms_per_range] = i;
+        break;
+      }
+      own.add(p);
     }
-    bounds.add(p);
+    bounds_of_range[begin / atoms_per_range] = own;
+  });
+  Bounds bounds;
+  for (std::size_t n = 0; n < ranges; ++n) {
+    if (not_finite[n] < positions.size()) {
+      throw Error("atom " + std::to_string(not_finite[n] + 1) + " has a position that is not finite");
+    }
+    bounds.add(bounds_of_range[n].min);
+    bounds.add(bounds_of_range[n].max);
   }
   progress.check();
   start_.push_back(0);
@@ -34,21 +52,26 @@ AtomBlocks::AtomBlocks(std::span<const Vec3> positions, double edge, const Progr
 
   const std::uint64_t all = static_cast<std::uint64_t>(count_[0] * count_[1] * count_[2]);
   order_.resize(positions.size());
-  if (all <= positions.size() + 65536) {
+  if (all <= positions.size() + 65536 && all < no_index) {
+    std::vector<Index> key(positions.size());
+    parallel_for(positions.size(), atoms_per_range, [&](std::size_t begin, std::size_t end) {
+      progress.check();
+      for (std::size_t i = begin; i < end; ++i) key[i] = static_cast<Index>(key_of(positions[i]));
+    });
     std::vector<Index> next(all + 1, 0);
-    for (const Vec3& p : positions) ++next[key_of(p) + 1];
+    for (const Index k : key) ++next[std::size_t{k} + 1];
     progress.check();
     table_.assign(all, no_index);
-    for (std::uint64_t key = 0; key < all; ++key) {
-      if (next[key + 1] > 0) {
-        table_[key] = static_cast<Index>(keys_.size());
-        keys_.push_back(key);
+    for (std::uint64_t k = 0; k < all; ++k) {
+      if (next[k + 1] > 0) {
+        table_[k] = static_cast<Index>(keys_.size());
+        keys_.push_back(k);
       }
-      next[key + 1] += next[key];
-      if (table_[key] != no_index) start_.push_back(next[key + 1]);
+      next[k + 1] += next[k];
+      if (table_[k] != no_index) start_.push_back(next[k + 1]);
     }
     progress.check();
-    for (std::size_t i = 0; i < positions.size(); ++i) order_[next[key_of(positions[i])]++] = static_cast<Index>(i);
+    for (std::size_t i = 0; i < positions.size(); ++i) order_[next[key[i]]++] = static_cast<Index>(i);
   } else {
     std::iota(order_.begin(), order_.end(), Index{0});
     std::vector<std::uint64_t> key(positions.size());

@@ -12,7 +12,8 @@ namespace atomesh {
 // kept.
 Tetrahedron canonical(Tetrahedron tetrahedron);
 
-// Canonical tetrahedra in lexicographic order. Indices are below `vertices`. Takes 16 bytes a tetrahedron.
+// Canonical tetrahedra in lexicographic order. Indices are below `vertices`. Takes 12 bytes a tetrahedron and up to 24
+// a vertex.
 void put_in_canonical_order(std::vector<Tetrahedron>& tetrahedra, std::size_t vertices,
                             Progress& progress = no_progress());
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -57,28 +59,49 @@ struct ByPatch {
 };
 
 void span_cells(std::span<const Index> atoms, const std::vector<LatticeSite>& of, LatticePatch& patch) {
-  patch.min.fill(std::numeric_limits<std::int32_t>::max());
-  patch.max.fill(std::numeric_limits<std::int32_t>::min());
-  patch.atoms = 0;
-  for (const Index i : atoms) {
-    if (of[i].patch == no_patch) continue;
-    ++patch.atoms;
+  struct Part {
+    std::size_t atoms = 0;
+    std::array<std::int32_t, 3> min{}, max{};
+  };
+  Part none;
+  none.min.fill(std::numeric_limits<std::int32_t>::max());
+  none.max.fill(std::numeric_limits<std::int32_t>::min());
+  std::vector<Part> parts((atoms.size() + atoms_per_range - 1) / atoms_per_range, none);
+  const auto widen = [](auto& all, const std::array<std::int32_t, 3>& min, const std::array<std::int32_t, 3>& max) {
     for (int k = 0; k < 3; ++k) {
-      patch.min[k] = std::min(patch.min[k], of[i].cell[k]);
-      patch.max[k] = std::max(patch.max[k], of[i].cell[k]);
+      all.min[k] = std::min(all.min[k], min[k]);
+      all.max[k] = std::max(all.max[k], max[k]);
     }
+  };
+  parallel_for(atoms.size(), atoms_per_range, [&](std::size_t begin, std::size_t end) {
+    Part part = none;
+    for (const Index i : atoms.subspan(begin, end - begin)) {
+      if (of[i].patch == no_patch) continue;
+      ++part.atoms;
+      widen(part, of[i].cell, of[i].cell);
+    }
+    parts[begin / atoms_per_range] = part;
+  });
+  patch.min = none.min;
+  patch.max = none.max;
+  patch.atoms = 0;
+  for (const Part& part : parts) {
+    patch.atoms += part.atoms;
+    widen(patch, part.min, part.max);
   }
 }
 
-// Of two atoms on one site the nearer stays, the first of two equally near.
-void part_sharers(std::span<const Index> atoms, const std::vector<float>& squared, const LatticePatch& patch,
+// Of two atoms on one site the nearer stays, the first of two equally near. Whether there were any.
+bool part_sharers(std::span<const Index> atoms, const std::vector<float>& squared, const LatticePatch& patch,
                   std::size_t basis, std::vector<LatticeSite>& of, const Progress& progress) {
   SiteTable table(patch.min, patch.max, basis, atoms.size());
+  bool any = false;
   std::size_t n = 0;
   for (const Index i : atoms) {
     if (n++ % atoms_per_range == 0) progress.check();
     const LatticeSite site = of[i];
     const Index other = table.atom(site.cell, site.basis);
+    any = any || other != no_index;
     if (other != no_index && squared[other] <= squared[i]) {
       of[i] = {};
       continue;
@@ -86,23 +109,34 @@ void part_sharers(std::span<const Index> atoms, const std::vector<float>& square
     if (other != no_index) of[other] = {};
     table.put(site.cell, site.basis, i);
   }
+  return any;
 }
 
 // Sums over a patch's atoms of labels and offsets, about the middle of the patch.
 struct Moments {
-  double weight = 0.0, squared = 0.0, largest = 0.0;
+  double weight = 0.0;
   Vec3 s{0.0}, r{0.0};
   Mat3 ss{0.0}, rs{0.0};
 
   void add(const Moments& other) {
     weight += other.weight;
-    squared += other.squared;
-    largest = std::max(largest, other.largest);
     s += other.s;
     r += other.r;
     ss += other.ss;
     rs += other.rs;
   }
+};
+
+// How far the patch's atoms are from its frame's sites.
+struct Misfit {
+  double weight = 0.0, squared = 0.0, largest = 0.0;
+
+  void add(const Misfit& other) {
+    weight += other.weight;
+    squared += other.squared;
+    largest = std::max(largest, other.largest);
+  }
+  double rms() const { return std::sqrt(squared / weight); }
 };
 
 // Fits the patch's frame: least squares, then again with little weight for what lies further off than most.
@@ -123,51 +157,67 @@ class PatchFit {
   }
 
   void run(const Progress& progress) {
-    improve(sum(0.0));
-    Moments now = sum(0.0);
+    improve(moments(0.0));
+    double scale = 0.0;  // of the weights that `now` was taken with
+    Misfit now = misfit(scale);
     for (int round = 0; round < 2 && now.squared > 0.0; ++round) {
-      const double scale = std::sqrt(now.squared / now.weight);
       // Rounding alone: nothing left to improve.
-      if (scale < 1e-12 * extent()) break;
+      if (now.rms() < 1e-12 * extent()) break;
+      scale = now.rms();
       progress.check();
-      improve(sum(scale));
-      now = sum(scale);
+      improve(moments(scale));
+      now = misfit(scale);
     }
-    now = sum(0.0);
-    patch_.rms = std::sqrt(now.squared / now.weight);
+    if (scale > 0.0) now = misfit(0.0);
+    patch_.rms = now.rms();
     patch_.largest = std::sqrt(now.largest);
   }
 
  private:
-  Moments sum(double scale) const {
-    const std::size_t ranges = (atoms_.size() + atoms_per_range - 1) / atoms_per_range;
-    std::vector<Moments> part(ranges);
+  // Sums part(label, offset from the site, weight) over the atoms, range by range.
+  template <class Sum, class Part>
+  Sum sum(double scale, const Part& part) const {
+    std::vector<Sum> parts((atoms_.size() + atoms_per_range - 1) / atoms_per_range);
     parallel_for(atoms_.size(), atoms_per_range, [&](std::size_t begin, std::size_t end) {
-      Moments& m = part[begin / atoms_per_range];
+      Sum own;
+      const Vec3 origin = patch_.origin;
+      const Mat3 matrix = patch_.matrix;
       const double inverse = scale > 0.0 ? 1.0 / (scale * scale) : 0.0;
       for (std::size_t n = begin; n < end; ++n) {
         const LatticeSite& site = of_[atoms_[n]];
         if (site.patch == no_patch) continue;
         const Vec3 label = Vec3(site.cell[0], site.cell[1], site.cell[2]) + fraction_[site.basis];
-        const Vec3 r = positions_[atoms_[n]] - (patch_.origin + patch_.matrix * label);
-        const Vec3 s = label - middle_;
-        const double squared = glm::dot(r, r);
-        const double lighter = 1.0 + squared * inverse;
-        const double w = 1.0 / (lighter * lighter);
-        m.weight += w;
-        m.squared += w * squared;
-        m.largest = std::max(m.largest, squared);
-        m.s += w * s;
-        m.r += w * r;
-        for (int k = 0; k < 3; ++k) {
-          m.ss[k] += w * s[k] * s;
-          m.rs[k] += w * s[k] * r;
-        }
+        const Vec3 r = positions_[atoms_[n]] - (origin + matrix * label);
+        const double lighter = 1.0 + glm::dot(r, r) * inverse;
+        part(own, label, r, 1.0 / (lighter * lighter));
+      }
+      parts[begin / atoms_per_range] = own;
+    });
+    Sum all;
+    for (const Sum& own : parts) all.add(own);
+    return all;
+  }
+
+  Misfit misfit(double scale) const {
+    return sum<Misfit>(scale, [](Misfit& m, const Vec3&, const Vec3& r, double w) {
+      const double squared = glm::dot(r, r);
+      m.weight += w;
+      m.squared += w * squared;
+      m.largest = std::max(m.largest, squared);
+    });
+  }
+
+  Moments moments(double scale) const {
+    return sum<Moments>(scale, [middle = middle_](Moments& m, const Vec3& label, const Vec3& r, double w) {
+      const Vec3 s = label - middle;
+      m.weight += w;
+      m.s += w * s;
+      m.r += w * r;
+      for (int k = 0; k < 3; ++k) {
+        m.ss[k] += w * s[k] * s;
+        m.rs[k] += w * s[k] * r;
       }
     });
-    Moments all;
-    for (const Moments& m : part) all.add(m);
-    return all;
   }
 
   // Å, about the size of the patch.
@@ -224,44 +274,51 @@ LatticeSites assign_lattice_sites(const Atoms& atoms, const Crystal& crystal, co
   }
 
   std::vector<LatticeWalk::Patch> begun;
+  std::vector<LatticePatch> spans;
+  bool changed = false;  // since the atoms were gathered by patch
+  std::optional<ByPatch> by_patch;
   {
     LatticeWalk walk(atoms, crystal, walk_patterns, options.smallest_patch, sites.of, progress);
     begun = walk.run(progress);
-    const ByPatch by_patch(sites.of, begun.size());
+    by_patch.emplace(sites.of, begun.size());
     for (std::size_t p = 0; p < begun.size(); ++p) {
       progress.check();
-      LatticePatch patch;
-      span_cells(by_patch.atoms(p), sites.of, patch);
+      LatticePatch& patch = spans.emplace_back();
+      span_cells(by_patch->atoms(p), sites.of, patch);
       const std::size_t basis = sites.patterns[begun[p].pattern].cell.basis.size();
-      if (patch.atoms > 0) part_sharers(by_patch.atoms(p), walk.squared(), patch, basis, sites.of, progress);
+      if (patch.atoms > 0 && part_sharers(by_patch->atoms(p), walk.squared(), patch, basis, sites.of, progress)) {
+        changed = true;
+        span_cells(by_patch->atoms(p), sites.of, patch);
+      }
     }
   }
 
   // Most atoms first; those of small patches are let go.
-  std::vector<std::size_t> count(begun.size(), 0);
-  for (const LatticeSite& site : sites.of) {
-    if (site.patch != no_patch) ++count[site.patch];
-  }
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < begun.size(); ++p) {
-    if (count[p] >= std::max<std::size_t>(options.smallest_patch, 1)) order.push_back(p);
+    if (spans[p].atoms >= std::max<std::size_t>(options.smallest_patch, 1)) order.push_back(p);
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return count[a] > count[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return spans[a].atoms > spans[b].atoms; });
   std::vector<std::uint16_t> renamed(begun.size(), no_patch);
   for (std::size_t n = 0; n < order.size(); ++n) renamed[order[n]] = static_cast<std::uint16_t>(n);
-  for (LatticeSite& site : sites.of) {
-    if (site.patch == no_patch) continue;
-    site.patch = renamed[site.patch];
-    if (site.patch == no_patch) site = {};
+  bool same_names = true;
+  for (std::size_t p = 0; p < begun.size(); ++p) same_names = same_names && renamed[p] == p;
+  if (!same_names) {
+    changed = true;
+    for (LatticeSite& site : sites.of) {
+      if (site.patch == no_patch) continue;
+      site.patch = renamed[site.patch];
+      if (site.patch == no_patch) site = {};
+    }
   }
-  const ByPatch by_patch(sites.of, order.size());
+  if (changed) by_patch.emplace(sites.of, order.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
     progress.check();
-    LatticePatch& patch = sites.patches.emplace_back();
+    LatticePatch& patch = sites.patches.emplace_back(spans[order[n]]);
     patch.pattern = begun[order[n]].pattern;
     patch.seams = begun[order[n]].seams;
-    span_cells(by_patch.atoms(n), sites.of, patch);
-    PatchFit(by_patch.atoms(n), atoms, sites, patch).run(progress);
+    PatchFit(by_patch->atoms(n), atoms, sites, patch).run(progress);
   }
   progress.update(1.0);
   return sites;

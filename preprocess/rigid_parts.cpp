@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "core/error.h"
@@ -66,29 +67,34 @@ bool find_lattice(std::span<const Vec3> points, const LatticeSites& sites, const
                   std::span<const Index> chosen, RigidLattice& lattice) {
   constexpr std::size_t enough = 20;
   const std::size_t basis = sites.patterns[sites.patches[lattice.patch].pattern].cell.basis.size();
-  std::vector<Vec3> differences;
-  for (int k = 0; k < 3; ++k) {
-    differences.clear();
-    for (const Index i : chosen) {
-      auto cell = sites.of[i].cell;
-      ++cell[k];
-      const Index next = table.atom(cell, sites.of[i].basis);
-      if (next != no_index) differences.push_back(points[next] - points[i]);
-    }
-    if (differences.size() < enough) return false;
-    lattice.matrix[k] = crowded_value(differences);
-  }
   lattice.offsets.assign(basis, Vec3(0.0));
-  for (std::uint16_t b = 1; b < basis; ++b) {
-    differences.clear();
-    for (const Index i : chosen) {
-      const Index zero = table.atom(sites.of[i].cell, 0);
-      const Index other = zero == no_index ? no_index : table.atom(sites.of[i].cell, b);
-      if (other != no_index) differences.push_back(points[other] - points[zero]);
+  // The three vectors, then the offsets of the basis atoms after the first.
+  std::vector<std::uint8_t> known(basis + 2, 0);
+  parallel_for(known.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3> differences;
+    for (std::size_t n = begin; n < end; ++n) {
+      differences.clear();
+      for (const Index i : chosen) {
+        const LatticeSite& site = sites.of[i];
+        Index from = i;
+        Index to = no_index;
+        if (n < 3) {
+          auto cell = site.cell;
+          ++cell[n];
+          to = table.atom(cell, site.basis);
+        } else {
+          from = table.atom(site.cell, 0);
+          if (from != no_index) to = table.atom(site.cell, static_cast<std::uint16_t>(n - 2));
+        }
+        if (to != no_index) differences.push_back(points[to] - points[from]);
+      }
+      known[n] = differences.size() < enough ? 0 : 1;
+      if (known[n] == 0) continue;
+      Vec3& result = n < 3 ? lattice.matrix[static_cast<glm::length_t>(n)] : lattice.offsets[n - 2];
+      result = crowded_value(differences);
     }
-    if (differences.size() < enough) return false;
-    lattice.offsets[b] = crowded_value(differences);
-  }
+  });
+  if (std::find(known.begin(), known.end(), 0) != known.end()) return false;
   return std::abs(glm::determinant(lattice.matrix)) > 0.0;
 }
 
@@ -145,6 +151,19 @@ std::size_t piece_of(Index atom, std::span<const Vec3> points, const LatticeSite
   return squared <= limit ? piece : lattice.origins.size();
 }
 
+// For how many of the atoms the answer is yes.
+template <class Asked>
+std::size_t count_of(std::span<const Index> atoms, const Asked& asked) {
+  constexpr std::size_t atoms_per_range = 512;
+  std::vector<std::size_t> part((atoms.size() + atoms_per_range - 1) / atoms_per_range, 0);
+  parallel_for(atoms.size(), atoms_per_range, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (const Index i : atoms.subspan(begin, end - begin)) count += asked(i) ? 1 : 0;
+    part[begin / atoms_per_range] = count;
+  });
+  return std::accumulate(part.begin(), part.end(), std::size_t{0});
+}
+
 // How many of the atoms have every polytope around them whole and in place.
 std::size_t count_undisturbed(std::span<const Vec3> points, const LatticeSites& sites, const SiteTable& table,
                               std::span<const Index> chosen, const RigidLattice& lattice, double limit) {
@@ -161,21 +180,18 @@ std::size_t count_undisturbed(std::span<const Vec3> points, const LatticeSites& 
       }
     }
   }
-  std::size_t count = 0;
-  for (const Index i : chosen) {
+  return count_of(chosen, [&](Index i) {
     const LatticeSite& site = sites.of[i];
     const std::size_t piece = piece_of(i, points, sites, lattice, limit);
-    if (piece == lattice.origins.size()) continue;
+    if (piece == lattice.origins.size()) return false;
     const auto& offsets = around[site.basis];
-    const bool whole = std::all_of(offsets.begin(), offsets.end(), [&](const SiteOffset& offset) {
+    return std::all_of(offsets.begin(), offsets.end(), [&](const SiteOffset& offset) {
       auto cell = site.cell;
       for (int k = 0; k < 3; ++k) cell[k] += offset.cell[k];
       const Index other = table.atom(cell, offset.basis);
       return other != no_index && piece_of(other, points, sites, lattice, limit) == piece;
     });
-    count += whole ? 1 : 0;
-  }
-  return count;
+  });
 }
 
 // A pattern, and how sites of the one it takes the place of read in its numbers: site (c, b) is (turn · c + shift[b],
@@ -256,10 +272,9 @@ RigidParts find_rigid_parts(std::span<const Vec3> points, const LatticeSites& si
       return static_cast<double>(count) / static_cast<double>(asked) * static_cast<double>(sites.patches[p].atoms) /
              static_cast<double>(points.size());
     };
-    const auto held = std::count_if(chosen.begin(), chosen.end(), [&](Index i) {
-      return piece_of(i, points, sites, lattice, limit) < lattice.origins.size();
-    });
-    parts.in_place += share_of_all(static_cast<std::size_t>(held), chosen.size());
+    const std::size_t held =
+        count_of(chosen, [&](Index i) { return piece_of(i, points, sites, lattice, limit) < lattice.origins.size(); });
+    parts.in_place += share_of_all(held, chosen.size());
     const std::vector<Index> fewer = choose(sites, lattice.patch, most_asked_around);
     parts.undisturbed += share_of_all(count_undisturbed(points, sites, table, fewer, lattice, limit), fewer.size());
     parts.parts += lattice.origins.size();
@@ -275,6 +290,7 @@ void split_into_rigid_parts(std::span<const Vec3> points, const RigidParts& part
     std::size_t first_piece = 0;  // after the main one
     Mat3 turn{1.0};
     std::vector<Vec3> shift;
+    bool renumbered = false;
   };
   std::vector<Change> changes(before);
   for (const RigidLattice& lattice : parts.lattices) {
@@ -283,7 +299,9 @@ void split_into_rigid_parts(std::span<const Vec3> points, const RigidParts& part
     const Vec3 first = lattice.matrix * sites.fractional(patch.pattern)[0];
     patch.pattern = static_cast<std::uint16_t>(sites.patterns.size());
     patch.matrix = refined.pattern.cell.matrix();
-    changes[lattice.patch] = {&lattice, sites.patches.size(), refined.turn, std::move(refined.shift)};
+    const bool renumbered = refined.turn != Mat3(1.0) || std::any_of(refined.shift.begin(), refined.shift.end(),
+                                                                     [](const Vec3& s) { return s != Vec3(0.0); });
+    changes[lattice.patch] = {&lattice, sites.patches.size(), refined.turn, std::move(refined.shift), renumbered};
     sites.patterns.push_back(std::move(refined.pattern));
     for (std::size_t n = 0; n < lattice.origins.size(); ++n) {
       patch.origin = lattice.origins[n] + lattice.offsets[0] - first;
@@ -304,6 +322,7 @@ void split_into_rigid_parts(std::span<const Vec3> points, const RigidParts& part
         const std::size_t piece = nearest_piece(origin_of(points[i], site, lattice), lattice.origins).second;
         if (piece > 0) site.patch = static_cast<std::uint16_t>(change.first_piece + piece - 1);
       }
+      if (!change.renumbered) continue;
       const Vec3 cell = change.turn * cell_of(site) + change.shift[site.basis];
       for (int k = 0; k < 3; ++k) site.cell[k] = static_cast<std::int32_t>(std::lround(cell[k]));
     }
