@@ -7,6 +7,9 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "preprocess/lattice_sites.h"
+#include "preprocess/pattern_radius.h"
+#include "preprocess/rigid_parts.h"
+#include "preprocess/tetrahedralize.h"
 #include "tests/support/lattices.h"
 
 namespace atomesh {
@@ -395,6 +398,58 @@ TEST(LatticeSites, DoesNotDependOnThreads) {
   EXPECT_EQ(one.of, three.of);
   EXPECT_EQ(one.patches[0].matrix, three.patches[0].matrix);
   EXPECT_EQ(one.patches[0].rms, three.patches[0].rms);
+}
+
+TEST(LatticeSites, TheFirstPositionThatIsNotFiniteIsNamed) {
+  Atoms atoms = test::cut_where(test::lattice("nacl").cell, Vec3(55), [](const Vec3&) { return true; });
+  ASSERT_GT(atoms.size(), 40000U);
+  atoms.positions[40000].y = std::numeric_limits<double>::quiet_NaN();
+  atoms.positions[33332].z = std::numeric_limits<double>::infinity();
+  try {
+    assign_lattice_sites(atoms, {{test::lattice("nacl").cell}, {}}, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("atom 33333 "), std::string::npos) << error.what();
+  }
+}
+
+TEST(RigidParts, DoNotDependOnThreads) {
+  const UnitCell cell = test::lattice("diamond").cell;
+  Known known(test::cut_where(cell, Vec3(30), [](const Vec3&) { return true; }));
+  known.move([](const Vec3& p) { return p.z > 3.0 ? Vec3(0.4, 0.1, 0.0) : Vec3(0.0); });
+  known.shuffle(5);
+  const std::vector<Vec3>& points = known.atoms.positions;
+  const LatticeSites sites = assign_lattice_sites(known.atoms, {{cell}, {}}, {});
+  set_threads(1);
+  const RigidParts one = find_rigid_parts(points, sites);
+  set_threads(3);
+  const RigidParts three = find_rigid_parts(points, sites);
+  set_threads(0);
+  EXPECT_GE(one.parts, 2U);
+  EXPECT_EQ(one.parts, three.parts);
+  EXPECT_EQ(one.in_place, three.in_place);
+  EXPECT_EQ(one.undisturbed, three.undisturbed);
+  ASSERT_EQ(one.lattices.size(), three.lattices.size());
+  for (std::size_t n = 0; n < one.lattices.size(); ++n) {
+    EXPECT_EQ(one.lattices[n].matrix, three.lattices[n].matrix);
+    EXPECT_EQ(one.lattices[n].offsets, three.lattices[n].offsets);
+    EXPECT_EQ(one.lattices[n].origins, three.lattices[n].origins);
+  }
+}
+
+TEST(PatternRadius, EnclosureDoesNotDependOnThreads) {
+  std::vector<Vec3> points = test::random_atoms(3000, 30.0, 4).positions;
+  std::vector<Tetrahedron> tetrahedra = delaunay_cgal(points, no_progress());
+  tetrahedra.resize(tetrahedra.size() / 2);  // so that some vertices have none and many are on the outside
+  set_threads(1);
+  const RadiusBounds one = enclose_radius(tetrahedra, points);
+  set_threads(3);
+  const RadiusBounds three = enclose_radius(tetrahedra, points);
+  set_threads(0);
+  EXPECT_GT(one.least, 0.0);
+  EXPECT_EQ(one.least, three.least);
+  EXPECT_EQ(one.largest, three.largest);
+  EXPECT_EQ(one.between, three.between);
 }
 
 TEST(LatticeSites, CanBeCancelled) {

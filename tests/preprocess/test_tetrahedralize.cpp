@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 
 #include "core/error.h"
@@ -294,6 +295,32 @@ TEST(CanonicalTetrahedra, SmallestFirstAndOrientationKept) {
     EXPECT_EQ(inversions(result) % 2, inversions(tet) % 2);
   } while (std::next_permutation(tet.begin(), tet.end()));
   EXPECT_EQ(found, (std::set<Tetrahedron>{{4, 5, 6, 7}, {4, 5, 7, 6}}));
+}
+
+// Against the sort of the whole list, with vertices that have none, a few and very many tetrahedra.
+TEST(CanonicalTetrahedra, OrderIsThatOfASortAtAnyNumberOfThreads) {
+  constexpr Index vertices = 5000;
+  std::mt19937_64 generator(3);
+  std::uniform_int_distribution<Index> any(10, vertices - 1);
+  std::vector<Tetrahedron> given;
+  while (given.size() < 40000) {
+    Tetrahedron t{any(generator), any(generator), any(generator), any(generator)};
+    if (given.size() % 20 == 0) t[given.size() % 4] = 7;
+    if (std::set<Index>(t.begin(), t.end()).size() == 4) given.push_back(t);
+  }
+  std::vector<Tetrahedron> expected = given;
+  for (Tetrahedron& t : expected) t = canonical(t);
+  std::sort(expected.begin(), expected.end());
+  for (const int count : {1, 2, 3, 7}) {
+    set_threads(count);
+    std::vector<Tetrahedron> ordered = given;
+    put_in_canonical_order(ordered, vertices);
+    EXPECT_EQ(ordered, expected) << count;
+  }
+  set_threads(0);
+  std::vector<Tetrahedron> none;
+  put_in_canonical_order(none, 3);
+  EXPECT_TRUE(none.empty());
 }
 
 }  // namespace
