@@ -129,7 +129,8 @@ BenchTable BenchResult::requirements() const {
          all ? "yes" : "NO"});
   }
   for (const auto& [what, option] : unmeasured_) result.table.row({what, "", "", "", "", "not measured: " + option});
-  result.caption = fmt::format("{} of {} met.", met, lines.size());
+  result.caption =
+      lines.empty() ? "Nothing is required of the cases measured." : fmt::format("{} of {} met.", met, lines.size());
   return result;
 }
 
@@ -137,7 +138,7 @@ std::string BenchResult::text(std::size_t first) const {
   std::string out;
   for (const BenchTable& table : std::span(tables).subspan(first)) {
     if (!table.title.empty()) out += table.title + "\n";
-    out += table.table.text();
+    if (!table.table.empty()) out += table.table.text();
     if (!table.caption.empty()) out += table.caption + "\n";
     out += "\n";
   }
@@ -148,8 +149,8 @@ std::string BenchResult::markdown() const {
   std::string out;
   for (const BenchTable& table : tables) {
     if (!table.title.empty()) out += "#### " + table.title + "\n\n";
-    out += table.table.markdown();
-    if (!table.caption.empty()) out += "\n" + table.caption + "\n";
+    if (!table.table.empty()) out += table.table.markdown() + "\n";
+    if (!table.caption.empty()) out += table.caption + "\n";
     out += "\n";
   }
   return out;

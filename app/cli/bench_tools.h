@@ -121,7 +121,6 @@ class BenchResult {
   // One line for each requirement, in the order they came: how many cases there were of it, the worst, and whether it
   // is met, which it is when every case meets it.
   BenchTable requirements() const;
-  bool has_requirements() const { return !required_.empty(); }
   // Of the tables from the `first` on.
   std::string text(std::size_t first = 0) const;
   std::string markdown() const;
