@@ -289,11 +289,14 @@ LatticeWalk::Seed LatticeWalk::try_seed(std::size_t block) const {
   Seed best;
   best.block = block;
   const std::size_t tried = std::min(seed_atoms, free.size());
+  // Nothing beats a block all of whose atoms are in place to rounding, of the right species.
+  const double highest = (species_known_ ? 1.5 : 1.0) * static_cast<double>(free.size());
   for (const std::uint16_t p : patterns) {
     const WalkPattern& pattern = patterns_[p];
     for (std::size_t n = 0; n < tried; ++n) {
       const Vec3& place = atoms_.positions[free[(2 * n + 1) * free.size() / (2 * tried)]];
       for (const BasisAtom& atom : pattern.cell.basis) {
+        if (best.score >= highest) return best;
         Outcome outcome = match(block, pattern, {pattern.cell.matrix(), place - atom.position});
         const double order = outcome.mean_squared / (pattern.tolerance * pattern.tolerance);
         const double score = outcome.matched * (1.0 - 0.5 * order) + 0.5 * outcome.of_species;
