@@ -31,6 +31,7 @@ struct StampReport {
   std::size_t filled = 0;      // tetrahedra it added, copies included
   std::size_t copied = 0;      // atoms that cells were copied to
   std::size_t rounds = 0;      // times that stamps at the seam were taken back
+  double tolerance = 0.0;      // the one that was used
 };
 
 // All Delaunay tetrahedra of the points with a circumsphere of at most options.largest_radius, ties between equal
@@ -43,9 +44,13 @@ struct StampReport {
 // they are is proved in stamp_sample.cpp). A Delaunay cell of all points is one of any subset that holds its corners,
 // so the triangulation of the open points holds every cell that is missing; those of its cells whose sphere holds any
 // other point are not Delaunay and are dropped. Both halves speak of the same complex, so they fit without gap or
-// overlap. That is checked on every triangle between them; where it does not hold, as it may when coordinates are
-// rounded by about as much as the tolerance allows, or where hardly anything can be stamped, all points are
+// overlap. That is checked on every triangle between them. Where it does not hold, as it may when atoms are off their
+// sites by about as much as the tolerance allows, stamps there are taken back, or all is done again with a hundredth of
+// the tolerance, twice at most; when nothing helps, or where hardly anything can be stamped, all points are
 // triangulated as if there were no pattern (nothing stamped then).
+//
+// What is open repeats, along a face or from vacancy to vacancy, as the crystal does: around equal neighbourhoods cells
+// are found once and copied (what "equal" has to mean is proved in stamp_copies.cpp).
 //
 // `points` are positions to mesh, all distinct and finite, sites.of[i] the site of point i. Positively oriented, in a
 // fixed order whatever the number of threads. Throws UsageError for options out of range and sites that do not belong
