@@ -350,34 +350,40 @@ bool StampedPatch::any_stamped(const LatticeSite& site) const {
 }
 
 std::vector<Triangle> StampedPatch::outside_faces(const LatticeSite& site) const {
-  // All that are not known to have a whole polytope on both sides, then without those that are seen from both.
-  std::vector<Triangle> seen;
+  // All that are not known to have a whole polytope on both sides, then without those that are seen from both. Each is
+  // kept as the two corners after the atom.
+  std::vector<std::uint64_t> seen;
+  const Index self = atom(site.cell, site.basis);
+  const auto key = [](Index a, Index b) { return std::uint64_t{a} << 32 | b; };
   std::array<Index, pull_polytope_corners> corner;
   for (const PatternCorner& c : pattern_.around(site.basis)) {
     const Cell anchor = site.cell + c.cell;
-    if (!stamped(anchor, c.polytope)) continue;
+    const bool is_whole = whole(anchor, c.polytope);
+    if (!is_whole && !bit(part_, anchor, c.polytope)) continue;
     const PatternPolytope& polytope = pattern_.polytopes()[c.polytope];
-    const PatternCut& cut = cut_of(c.polytope, find_corners(polytope, anchor, corner.data()));
-    const bool is_whole = &cut == &polytope.whole;
+    const PatternCut& cut =
+        is_whole ? polytope.whole : cut_of(c.polytope, find_corners(polytope, anchor, corner.data()));
+    const auto corner_atom = [&](std::uint8_t n) {
+      const SiteOffset& s = polytope.corners[n];
+      return atom(anchor + offset_cell(s), s.basis);
+    };
     for (std::size_t f = 0; f < cut.faces.size(); ++f) {
       const auto& face = cut.faces[f];
-      if (face[0] != c.corner && face[1] != c.corner && face[2] != c.corner) continue;
+      const std::size_t own = face[0] == c.corner ? 0 : face[1] == c.corner ? 1 : face[2] == c.corner ? 2 : 3;
+      if (own == 3) continue;
       if (is_whole) {
         const PatternNeighbour& behind = polytope.neighbours[f];
         if (whole(anchor + behind.cell, behind.polytope)) continue;
       }
-      seen.push_back({corner[face[0]], corner[face[1]], corner[face[2]]});
+      seen.push_back(key(corner_atom(face[(own + 1) % 3]), corner_atom(face[(own + 2) % 3])));
     }
   }
   std::vector<Triangle> outside;
-  for (const Triangle& t : seen) {
-    const bool inside = std::any_of(seen.begin(), seen.end(), [&](const Triangle& o) {
-      for (int i = 0; i < 3; ++i) {
-        if (o[i] == t[0]) return o[(i + 1) % 3] == t[2] && o[(i + 2) % 3] == t[1];
-      }
-      return false;
-    });
-    if (!inside) outside.push_back(t);
+  for (const std::uint64_t k : seen) {
+    const std::uint64_t behind = k << 32 | k >> 32;
+    bool inside = false;
+    for (const std::uint64_t other : seen) inside |= other == behind;
+    if (!inside) outside.push_back({self, static_cast<Index>(k >> 32), static_cast<Index>(k & 0xFFFFFFFFU)});
   }
   return outside;
 }
