@@ -8,6 +8,7 @@
 #include "core/circumsphere.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "preprocess/file_rounding.h"
 #include "preprocess/insert_points.h"
 #include "preprocess/mend_tetrahedra.h"
 #include "preprocess/neighbour_grid.h"
@@ -78,13 +79,13 @@ void note(const StampReport& stamp, PatternReport& report) {
 
 // False where the radius at which carve() would carve cannot be told without the tetrahedra above it.
 bool settle_radius(std::vector<Tetrahedron>& tetrahedra, std::span<const Vec3> points, const LatticeSites& sites,
-                   PatternReport& report, Progress& progress) {
+                   double tolerance, PatternReport& report, Progress& progress) {
   for (int round = 0; round < 3; ++round) {
     const RadiusBounds bounds = enclose_radius(tetrahedra, points, progress);
     if (bounds.largest > (1.0 + same_radius) * report.largest_radius) {
       report.largest_radius = bounds.largest;
       StampReport stamp;
-      tetrahedra = stamp_delaunay(points, sites, {report.largest_radius}, stamp, progress);
+      tetrahedra = stamp_delaunay(points, sites, {report.largest_radius, tolerance}, stamp, progress);
       note(stamp, report);
       continue;
     }
@@ -99,16 +100,19 @@ bool settle_radius(std::vector<Tetrahedron>& tetrahedra, std::span<const Vec3> p
 }
 
 std::vector<Tetrahedron> mesh_exactly(std::span<const Vec3> points, const LatticeSites& sites,
-                                      const PatternOptions& options, PatternReport& report, Progress& progress) {
+                                      const PatternOptions& options, double tolerance, PatternReport& report,
+                                      Progress& progress) {
   const LatticePatch& main = sites.patches[0];
   const PatternRadius radius = pattern_radius(sites.patterns[main.pattern], main.matrix);
   report.largest_radius = options.largest_radius > 0.0 ? options.largest_radius : radius.radius;
   StampReport stamp;
-  std::vector<Tetrahedron> tetrahedra = stamp_delaunay(points, sites, {report.largest_radius}, stamp, progress);
+  std::vector<Tetrahedron> tetrahedra =
+      stamp_delaunay(points, sites, {report.largest_radius, tolerance}, stamp, progress);
   note(stamp, report);
   // A quarter of the atoms decides; those that are not open have the crystal's own void around them.
   const bool certain = radius.certain && sites.patterns.size() == 1 && 4 * stamp.open_atoms < points.size();
-  if (options.largest_radius == 0.0 && !certain && !settle_radius(tetrahedra, points, sites, report, progress)) {
+  if (options.largest_radius == 0.0 && !certain &&
+      !settle_radius(tetrahedra, points, sites, tolerance, report, progress)) {
     report.why = fmt::format(
         "{} of the atoms are on their sites to rounding, but so many are on the surface that the radius of carving "
         "depends on tetrahedra that the pattern would leave out",
@@ -116,7 +120,14 @@ std::vector<Tetrahedron> mesh_exactly(std::span<const Vec3> points, const Lattic
     return {};
   }
   report.done = true;
-  report.delaunay = true;
+  report.delaunay = stamp.tolerance <= StampOptions{}.tolerance;
+  if (!report.delaunay) {
+    report.why = fmt::format(
+        "the coordinates are those of a crystal rounded to {:g} Å: {} of {} tetrahedra are the crystal's own, and the "
+        "mesh is Delaunay but for the rounding",
+        report.rounding, stamp.stamped, stamp.stamped + stamp.filled);
+    return tetrahedra;
+  }
   report.why =
       fmt::format("{} of the atoms are on their sites to rounding{}: {} of {} tetrahedra are the crystal's own",
                   percent(report.in_place), report.parts > 1 ? fmt::format(" in {} rigid parts", report.parts) : "",
@@ -268,6 +279,21 @@ std::vector<Tetrahedron> mesh_tolerantly(std::span<const Vec3> points, LatticeSi
   return tetrahedra;
 }
 
+std::size_t tetrahedra_per_cell(const LatticeTemplate& pattern) {
+  std::size_t count = 0;
+  for (const TemplatePolytope& polytope : pattern.polytopes) count += polytope.tetrahedra.size();
+  return count;
+}
+
+// Whether the rigid parts, with their atoms where they really are, need more tetrahedra than the crystal does: rounding
+// has taken corners of polytopes off their spheres.
+bool cuts_finer(const LatticeSites& parts, const LatticeSites& whole) {
+  std::size_t most = 0;
+  for (const LatticeTemplate& pattern : whole.patterns) most = std::max(most, tetrahedra_per_cell(pattern));
+  return std::any_of(parts.patterns.begin(), parts.patterns.end(),
+                     [&](const LatticeTemplate& pattern) { return tetrahedra_per_cell(pattern) > most; });
+}
+
 // Why the tolerant way cannot be taken, or nothing.
 std::string objection(std::size_t points, const LatticeSites& sites, const PatternOptions& options) {
   const LatticePatch& main = sites.patches[0];
@@ -309,10 +335,17 @@ std::vector<Tetrahedron> tetrahedralize_pattern(std::span<const Vec3> points, La
   report.parts = parts.parts;
   const std::string why_not = objection(points.size(), sites, options);
   const double enough = why_not.empty() ? options.least_undisturbed : options.least_undisturbed_alone;
+  report.rounding = find_rounding(points);
+  const double tolerance = tolerance_of_rounding(points, sites, report.rounding, options.least_in_place, progress);
   if (parts.in_place >= options.least_in_place || parts.undisturbed >= enough) {
-    split_into_rigid_parts(points, parts, sites);
-    return mesh_exactly(points, sites, options, report, progress);
+    LatticeSites split = sites;
+    split_into_rigid_parts(points, parts, split);
+    if (tolerance == 0.0 || (parts.in_place >= options.least_in_place && !cuts_finer(split, sites))) {
+      sites = {};
+      return mesh_exactly(points, split, options, StampOptions{}.tolerance, report, progress);
+    }
   }
+  if (tolerance > 0.0 && !why_not.empty()) return mesh_exactly(points, sites, options, tolerance, report, progress);
   if (!why_not.empty()) {
     report.why =
         fmt::format("only {} of the atoms are on their sites to rounding, and {}", percent(parts.in_place), why_not);

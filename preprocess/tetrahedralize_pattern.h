@@ -33,6 +33,7 @@ struct PatternReport {
   double largest_radius = 0.0;  // Å, used
   double in_place = 0.0;        // share of the atoms that are on their sites to rounding, ...
   double undisturbed = 0.0;     // ... and all around them too
+  double rounding = 0.0;        // Å: the coordinates are multiples of this power of ten; 0: of none
   std::size_t parts = 0;        // rigid parts these belong to: grains, slid layers
   std::size_t stamped = 0;      // tetrahedra of the pattern
   std::size_t filled = 0;       // tetrahedra that a Delaunay triangulation of what it left open gave
@@ -54,6 +55,11 @@ struct PatternReport {
 // *ideal* sites gives the tetrahedra, vacancies and surfaces filled alike; the atoms' positions are then put in and
 // what they invert is mended (mend_tetrahedra.h); atoms on no site go into the tetrahedra around them
 // (insert_points.h). Every tetrahedron is positively oriented; few are slivers, of which Delaunay has many there.
+//
+// Coordinates rounded in a file are neither exact nor noise. Delaunay's rule, taken literally, makes slivers of the
+// rounding, so where that is all that atoms are off by (file_rounding.h) the tolerant way goes first, even where the
+// rounded crystal repeats exactly. Where it cannot be taken, the exact way is with a tolerance as wide as the rounding
+// needs: the mesh is then cut as the unrounded one, without the claim of being Delaunay.
 //
 // `points` are all distinct; sites.of[i] is the site of point i, as assign_lattice_sites() gives. Returns nothing with
 // report.done false and the reason in report.why where neither way serves: mesh by Delaunay then. Same result at any

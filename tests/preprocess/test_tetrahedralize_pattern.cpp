@@ -277,6 +277,54 @@ TEST(TetrahedralizePattern, DislocationsAreRefused) {
   EXPECT_NE(pattern.report.why.find("dislocation"), std::string::npos) << pattern.report.why;
 }
 
+Atoms rounded(Atoms atoms, double step) {
+  for (Vec3& p : atoms.positions) p = glm::round(p / step) * step;
+  return atoms;
+}
+
+// As files have them: the tetrahedra of the exact crystal, and no slivers from rounding.
+TEST(TetrahedralizePattern, CoordinatesRoundedInAFile) {
+  for (const char* name : {"nacl", "diamond", "bcc"}) {
+    const test::Lattice& lattice = test::lattice(name);
+    for (const bool turn : {false, true}) {
+      const UnitCell cell = turn ? turned(lattice.cell, test::odd_rotation()) : lattice.cell;
+      const Atoms exact = thinned(test::cut_where(cell, Vec3(11), [](const Vec3&) { return true; }), 0.01);
+      const Pattern reference = by_pattern(exact, {{cell}, {}});
+      ASSERT_TRUE(reference.report.delaunay) << name << ": " << reference.report.why;
+      for (const double step : {1e-6, 1e-4, 1e-3}) {
+        const Pattern pattern = by_pattern(rounded(exact, step), {{cell}, {}});
+        const std::string what = std::string(name) + (turn ? " turned " : " ") + std::to_string(step);
+        EXPECT_TRUE(pattern.report.done) << what << ": " << pattern.report.why;
+        EXPECT_DOUBLE_EQ(pattern.report.rounding, turn ? step : pattern.report.rounding) << what;
+        EXPECT_EQ(pattern.mesh.tetrahedra.size(), reference.mesh.tetrahedra.size()) << what;
+        EXPECT_GT(min_dihedral_degrees(pattern.mesh), 0.9 * min_dihedral_degrees(reference.mesh)) << what;
+      }
+    }
+  }
+}
+
+// Two grains, apart so that none of the atoms counts to the wrong one, have no one perfect crystal to take the
+// tetrahedra from.
+TEST(TetrahedralizePattern, GrainsRoundedInAFile) {
+  const test::Lattice& fcc = test::lattice("fcc");
+  const UnitCell other = turned(fcc.cell, test::odd_rotation());
+  const Atoms exact = joined(test::cut_where(fcc.cell, Vec3(16), [](const Vec3& p) { return p.x < 0.0; }),
+                             test::cut_where(other, Vec3(16), [](const Vec3& p) { return p.x > 4.0; }));
+  const Crystal crystal{{fcc.cell, other}, {}};
+  const Pattern reference = by_pattern(exact, crystal);
+  ASSERT_TRUE(reference.report.delaunay) << reference.report.why;
+  for (const double step : {1e-6, 1e-4}) {
+    const Pattern pattern = by_pattern(rounded(exact, step), crystal);
+    ASSERT_TRUE(pattern.report.done) << pattern.report.why;
+    EXPECT_FALSE(pattern.report.delaunay);
+    EXPECT_NE(pattern.report.why.find("rounded"), std::string::npos) << pattern.report.why;
+    EXPECT_NEAR(volume(pattern.mesh) / volume(reference.mesh), 1.0, 10.0 * step);
+    EXPECT_NEAR(
+        static_cast<double>(pattern.mesh.tetrahedra.size()) / static_cast<double>(reference.mesh.tetrahedra.size()),
+        1.0, 2e-3);
+  }
+}
+
 TEST(TetrahedralizePattern, SaysWhyNot) {
   const test::Lattice& fcc = test::lattice("fcc");
   const Pattern amorphous = by_pattern(test::random_atoms(2000, 29.0, 4), {{fcc.cell}, {}});
