@@ -212,13 +212,16 @@ class ScalarIntegrator : public BlockOptics {
     } else if (any(w.length > Lanes(optics::piece_limit))) {
       light = lay_intervals_each_way(cell, s_in, s_out, w.length, light);
     } else if (any(w.length > Lanes(optics::thin_limit))) {
-      light = lay_intervals<false>(s_in, s_out, u_in < u_out, w.length, light);
+      light = lay_intervals<false>(cell, s_in, s_out, u_in < u_out, w.length, light);
     } else {
-      light = lay_intervals<true>(s_in, s_out, u_in < u_out, w.length, light);
+      light = lay_intervals<true>(cell, s_in, s_out, u_in < u_out, w.length, light);
     }
   }
 
  private:
+  // Finding out which intervals are met costs as much as passing about so many.
+  static constexpr int few_intervals = 3;
+
   static Rgba mapped(const MapInterval& interval, const Lanes& s) {
     const Lanes from_begin = s - Lanes(interval.begin);
     Rgba color;
@@ -272,15 +275,18 @@ class ScalarIntegrator : public BlockOptics {
   // whichever way the scalar goes: where it falls each interval's light is laid before that of those below, where it
   // rises behind.
   template <bool thin>
-  __attribute__((noinline, flatten)) Light lay_intervals(Lanes s_in, Lanes s_out, Mask met, Lanes length,
-                                                         Light light) const {
+  Light lay_intervals(const CellScalar& cell, Lanes s_in, Lanes s_out, Mask met, Lanes length, Light light) const {
     const Lanes zero(0.0F);
     const Lanes one(1.0F);
     const Lanes bottom = min(s_in, s_out);
     // A scalar that does not change gets a range to spread over: a rounding's worth.
     const Lanes top = max(max(s_in, s_out), bottom + Lanes(1e-7F));
-    const int first = find(smallest(select(met, bottom, Lanes(3e38F))));
-    const int last = find(largest(select(met, top, Lanes(-3e38F))));
+    int first = cell.first_interval;
+    int last = cell.last_interval;
+    if (last - first > few_intervals) {  // rarely all of them are met here
+      first = find(smallest(select(met, bottom, Lanes(3e38F))));
+      last = find(largest(select(met, top, Lanes(-3e38F))));
+    }
     const Mask falls = s_out < s_in;
     const Lanes half_way = select(falls, Lanes(-0.5F), Lanes(0.5F));
     const Lanes per_rise = length / (top - bottom);
@@ -289,7 +295,7 @@ class ScalarIntegrator : public BlockOptics {
       const MapInterval& interval = optics_.map[n];
       const Lanes begin(interval.begin);
       const Lanes from = max(bottom, begin);
-      const Lanes to = min(top, Lanes(interval.end));
+      const Lanes to = min(top, Lanes(n == last ? 3e38F : interval.end));
       const Lanes part = max(to - from, zero) * per_rise;
       const Lanes low_place = from - begin;
       const Lanes high_place = to - begin;
