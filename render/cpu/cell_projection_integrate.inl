@@ -125,7 +125,7 @@ class BlockOptics {
 
  protected:
   // Of a segment, u_in < u_out where there is one: its ends' depths from the cell's own, and alpha_length times the
-  // way, zero where there is none.
+  // way, zero where there is none (where the depths are finite all the same).
   struct Way {
     Lanes z_in, z_out, length;
   };

@@ -186,7 +186,8 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   const Doubles abs_c = c < zero ? -c : c;
   Doubles largest = abs_a > abs_b ? abs_a : abs_b;
   largest = largest > abs_c ? largest : abs_c;
-  const Doubles limit = zero + 1e30;
+  // Far beyond any depth, and nowhere near where floats end when it is multiplied.
+  const Doubles limit = zero + 1e20;
   const Doubles scale = largest > limit ? limit / largest : zero + 1.0;
   g.a[k] = to_floats(a * scale);
   g.b[k] = to_floats(b * scale);

@@ -21,10 +21,10 @@ SetupOutput Tile::resize(std::size_t count, bool colored) {
   return {planes.data(), colors.data(), ranges.data(), scalars.data(), keys.data(), blocks.data(), per_block_.data()};
 }
 
-// Keys are resolved to 2^-33 of their range: a radix sort of three digits.
+// Keys are resolved to 2^-32 of their range: a radix sort of three digits.
 void Tile::sort() {
   constexpr int digit = 11;
-  constexpr std::uint64_t digit_mask = (1U << digit) - 1;
+  constexpr std::uint32_t digit_mask = (1U << digit) - 1;
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (std::size_t n = 0; n < count_; ++n) {
@@ -32,12 +32,12 @@ void Tile::sort() {
     low = std::min(low, keys[n]);
     high = std::max(high, keys[n]);
   }
-  const double scale = high > low ? (std::ldexp(1.0, 3 * digit) - 1.0) / (high - low) : 0.0;
+  const double scale = high > low ? (std::ldexp(1.0, 32) - 1.0) / (high - low) : 0.0;
   std::array<std::array<std::uint32_t, 1 << digit>, 3> places{};
   sorted_.clear();
   for (std::size_t n = 0; n < count_; ++n) {
     if (blocks[n] == 0) continue;
-    const auto key = static_cast<std::uint64_t>((keys[n] - low) * scale);
+    const auto key = static_cast<std::uint32_t>((keys[n] - low) * scale);
     sorted_.push_back({key, static_cast<std::uint32_t>(n)});
     for (std::size_t pass = 0; pass < 3; ++pass) ++places[pass][key >> (digit * pass) & digit_mask];
   }

@@ -40,7 +40,7 @@ class Tile {
 
  private:
   struct Entry {
-    std::uint64_t key;
+    std::uint32_t key;
     std::uint32_t cell;
   };
   void sort();

@@ -8,14 +8,14 @@ namespace {
 
 // Tiles under a primitive, ends included; empty when first_column > last_column.
 struct TileRange {
-  std::uint16_t first_column = 1;
-  std::uint16_t last_column = 0;
-  std::uint16_t first_row = 0;
-  std::uint16_t last_row = 0;
+  std::uint16_t first_column;
+  std::uint16_t last_column;
+  std::uint16_t first_row;
+  std::uint16_t last_row;
 };
 
 TileRange tile_range(const PixelBox& box, int side) {
-  if (box.empty()) return {};
+  if (box.empty()) return {1, 0, 0, 0};
   const auto tile = [side](int pixel) { return static_cast<std::uint16_t>(pixel / side); };
   return {tile(box.first_column), tile(box.last_column), tile(box.first_row), tile(box.last_row)};
 }
@@ -33,7 +33,7 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
   // whatever the number of threads.
   const std::size_t chunks = std::clamp<std::size_t>(count / 4096, 1, 64);
   // Finding a box costs more than keeping where it lies from the counting to the filling.
-  std::vector<TileRange> ranges(count);
+  const auto ranges = std::make_unique_for_overwrite<TileRange[]>(count);
   const auto chunk_begin = [&](std::size_t chunk) { return count * chunk / chunks; };
   const auto for_chunk = [&](std::size_t chunk, auto&& visit) {
     for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i) {
@@ -64,7 +64,7 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
     }
   }
   bins.begin[tiles] = total;
-  bins.items.resize(total);
+  bins.items = std::make_unique_for_overwrite<Index[]>(total);
   parallel_for(chunks, 1, [&](std::size_t chunk, std::size_t) {
     progress.check();
     std::size_t* own = &place[chunk * tiles];

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "core/camera.h"
@@ -29,10 +30,10 @@ struct TileBins {
   int columns = 0;
   int rows = 0;
   std::vector<std::size_t> begin;
-  std::vector<Index> items;
+  std::unique_ptr<Index[]> items;
   std::size_t tiles() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::span<const Index> of(std::size_t tile) const {
-    return {items.data() + begin[tile], items.data() + begin[tile + 1]};
+    return {items.get() + begin[tile], items.get() + begin[tile + 1]};
   }
   // The tile's pixels, cut off at the picture's right and lower edge.
   PixelBox pixels_of(std::size_t tile, int width, int height) const {
