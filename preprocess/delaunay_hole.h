@@ -37,7 +37,6 @@ class DelaunayHole {
   std::vector<Triangle> front_;
   std::vector<std::uint64_t> front_name_;  // of each, to find it by
   std::vector<double> reach_;              // of each link vertex, along the pencil of spheres through a triangle
-  std::vector<Index> tied_;
   std::vector<Index> order_;
   std::vector<Tetrahedron> fill_;
 };

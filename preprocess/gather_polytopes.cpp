@@ -55,9 +55,10 @@ class Sets {
 }  // namespace
 
 std::vector<std::uint8_t> find_slivers(std::span<const Tetrahedron> tetrahedra, std::span<const Vec3> points,
-                                       const PolytopeTolerance& tolerance) {
+                                       const PolytopeTolerance& tolerance, const Progress& progress) {
   std::vector<std::uint8_t> sliver(tetrahedra.size());
   parallel_for(tetrahedra.size(), tetrahedra_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     for (std::size_t t = begin; t < end; ++t) sliver[t] = is_sliver(tetrahedra[t], points, tolerance.thickness) ? 1 : 0;
   });
   return sliver;
@@ -67,10 +68,11 @@ std::vector<std::pair<Index, Index>> gather_polytopes(std::span<const Tetrahedro
                                                       std::span<const Vec3> points,
                                                       std::span<const std::array<Index, 4>> neighbours,
                                                       const std::vector<std::uint8_t>& sliver,
-                                                      const PolytopeTolerance& tolerance) {
+                                                      const PolytopeTolerance& tolerance, const Progress& progress) {
   const std::size_t count = tetrahedra.size();
   std::vector<Sphere> spheres(count);
   parallel_for(count, tetrahedra_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     for (std::size_t t = begin; t < end; ++t) {
       const auto& [a, b, c, d] = tetrahedra[t];
       spheres[t] = circumsphere(points[a], points[b], points[c], points[d]);
@@ -79,6 +81,7 @@ std::vector<std::pair<Index, Index>> gather_polytopes(std::span<const Tetrahedro
   Sets sets(count);
   std::vector<std::uint8_t> seen(count, 0);
   for (std::size_t t = 0; t < count; ++t) {
+    if (t % tetrahedra_per_range == 0) progress.check();
     if (sliver[t] == 0) {
       for (const Index other : neighbours[t]) {
         if (other != no_index && other > t && sliver[other] == 0 &&
@@ -117,15 +120,21 @@ std::vector<std::pair<Index, Index>> gather_polytopes(std::span<const Tetrahedro
   for (std::size_t t = 0; t < count; ++t) {
     if (sliver[t] == 0) members.emplace_back(sets.root(static_cast<Index>(t)), static_cast<Index>(t));
   }
-  std::sort(members.begin(), members.end());
+  std::size_t compared = 0;
+  std::sort(members.begin(), members.end(), [&](const auto& a, const auto& b) {
+    if (++compared % (1 << 20) == 0) progress.check();
+    return a < b;
+  });
   return members;
 }
 
 bool cut_polytopes(std::span<const Tetrahedron> tetrahedra, std::span<const Vec3> points,
                    std::span<const std::pair<Index, Index>> members, std::span<const Index> rank,
-                   const PolytopeTolerance& tolerance, std::vector<Tetrahedron>& result) {
+                   const PolytopeTolerance& tolerance, std::vector<Tetrahedron>& result, const Progress& progress) {
   std::vector<Index> corners;
+  std::size_t polytopes = 0;
   for (std::size_t i = 0; i < members.size();) {
+    if (polytopes++ % 1024 == 0) progress.check();
     corners.clear();
     std::size_t j = i;
     for (; j < members.size() && members[j].first == members[i].first; ++j) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -17,7 +18,7 @@ struct PolytopeTolerance {
 
 // 1 for each sliver. Slivers have no sphere to speak of: they belong to no polytope and only lie between its pieces.
 std::vector<std::uint8_t> find_slivers(std::span<const Tetrahedron> tetrahedra, std::span<const Vec3> points,
-                                       const PolytopeTolerance& tolerance);
+                                       const PolytopeTolerance& tolerance, const Progress& progress = no_progress());
 
 // Joins what has one circumsphere and touches, face to face or with nothing but slivers between: pairs (polytope,
 // tetrahedron), ascending, slivers left out. `neighbours` as face_neighbours() has them.
@@ -25,12 +26,14 @@ std::vector<std::pair<Index, Index>> gather_polytopes(std::span<const Tetrahedro
                                                       std::span<const Vec3> points,
                                                       std::span<const std::array<Index, 4>> neighbours,
                                                       const std::vector<std::uint8_t>& sliver,
-                                                      const PolytopeTolerance& tolerance);
+                                                      const PolytopeTolerance& tolerance,
+                                                      const Progress& progress = no_progress());
 
 // Cuts every polytope of several tetrahedra anew with pull_polytope() and appends all to the result. Ranks as there,
 // one a point. False when one of them defies it.
 bool cut_polytopes(std::span<const Tetrahedron> tetrahedra, std::span<const Vec3> points,
                    std::span<const std::pair<Index, Index>> members, std::span<const Index> rank,
-                   const PolytopeTolerance& tolerance, std::vector<Tetrahedron>& result);
+                   const PolytopeTolerance& tolerance, std::vector<Tetrahedron>& result,
+                   const Progress& progress = no_progress());
 
 }  // namespace atomesh

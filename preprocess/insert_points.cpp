@@ -160,7 +160,7 @@ std::vector<Index> insert_points(std::vector<Tetrahedron>& tetrahedra, std::span
       }
     }
   }
-  LocalMesh mesh(tetrahedra, marked);
+  LocalMesh mesh(tetrahedra, marked, progress);
   Inserter inserter(mesh, points);
   std::vector<Index> outside;
   for (std::size_t n = 0; n < added.size(); ++n) {

@@ -6,6 +6,8 @@ namespace atomesh {
 
 namespace {
 
+constexpr std::size_t tetrahedra_per_check = 1 << 16;
+
 Triangle sorted_face(const Tetrahedron& tet, int f) {
   Triangle t = outward_face(tet, f);
   std::sort(t.begin(), t.end());
@@ -18,21 +20,23 @@ bool has(const Tetrahedron& tet, Index v) {
 
 }  // namespace
 
-LocalMesh::LocalMesh(std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& marked) {
+LocalMesh::LocalMesh(std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& marked, const Progress& progress) {
   const auto touches = [&](const Tetrahedron& t) {
     return marked[t[0]] || marked[t[1]] || marked[t[2]] || marked[t[3]];
   };
   // The rim is made of faces of the region that a tetrahedron outside it shares: none of its corners is marked, so the
   // region's tetrahedron has one marked corner, opposite.
   std::vector<bool> of_region(marked.size(), false);
+  std::size_t looked = 0;
   for (const Tetrahedron& t : tetrahedra) {
+    if (looked++ % tetrahedra_per_check == 0) progress.check();
     if (!touches(t)) continue;
     add(t);
     for (const Index v : t) of_region[v] = true;
   }
-  std::vector<Triangle> outer;
   std::size_t kept = 0;
   for (const Tetrahedron& t : tetrahedra) {
+    if (looked++ % tetrahedra_per_check == 0) progress.check();
     if (touches(t)) continue;
     tetrahedra[kept++] = t;
     for (int f = 0; f < 4; ++f) {

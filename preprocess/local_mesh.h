@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -26,7 +27,8 @@ class LocalMesh {
   // Takes the tetrahedra with a marked vertex out of `tetrahedra`, which keep their order; give_back() returns what
   // has become of them. Faces to those that stayed are the region's rim and count as outside, but they are not changed
   // by anything that leaves its own outside faces alone.
-  LocalMesh(std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& marked);
+  LocalMesh(std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& marked,
+            const Progress& progress = no_progress());
   void give_back(std::vector<Tetrahedron>& tetrahedra) const;
 
   std::size_t size() const { return tetrahedra_.size(); }  // numbers ever given, removed ones too

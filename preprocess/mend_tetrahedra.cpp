@@ -28,8 +28,9 @@ double volume_of(const Tetrahedron& t, std::span<const Vec3> p) {
 // Searches a filling of a cavity whose outward faces are given.
 class CavityFiller {
  public:
-  CavityFiller(std::vector<Triangle> faces, std::vector<Index> vertices, double volume, std::span<const Vec3> points)
-      : points_(points), vertices_(std::move(vertices)), room_(volume * (1.0 + 1e-9)) {
+  CavityFiller(std::vector<Triangle> faces, std::vector<Index> vertices, double volume, std::span<const Vec3> points,
+               const Progress& progress)
+      : points_(points), vertices_(std::move(vertices)), room_(volume * (1.0 + 1e-9)), progress_(progress) {
     for (const Triangle& face : faces) front_.insert(rotated(face));
   }
 
@@ -73,6 +74,7 @@ class CavityFiller {
   bool step() {
     if (front_.empty()) return true;
     if (++steps_ > most_steps) return false;
+    progress_.check();
     // The face with the fewest choices.
     Triangle face{};
     std::vector<Apex> choices;
@@ -145,19 +147,20 @@ class CavityFiller {
   std::map<Triangle, std::vector<Apex>> apexes_;
   std::vector<Tetrahedron> filling_;
   double room_;
+  const Progress& progress_;
   std::size_t steps_ = 0;
 };
 
 class Mender {
  public:
-  Mender(LocalMesh& mesh, std::span<const Vec3> points, MendReport& report)
-      : mesh_(mesh), points_(points), report_(report) {}
+  Mender(LocalMesh& mesh, std::span<const Vec3> points, MendReport& report, const Progress& progress)
+      : mesh_(mesh), points_(points), report_(report), progress_(progress) {}
 
-  bool mend(std::vector<Index> bad, Progress& progress) {
+  bool mend(std::vector<Index> bad) {
     // From the outside inward: what one removal uncovers may go next.
     for (bool changed = true; changed;) {
       changed = false;
-      progress.check();
+      progress_.check();
       for (Index& t : bad) {
         if (t == no_index || !mesh_.alive(t) || !is_outside(t)) continue;
         remove(t);
@@ -167,7 +170,7 @@ class Mender {
       }
     }
     for (const Index t : bad) {
-      progress.check();
+      progress_.check();
       if (t == no_index || !mesh_.alive(t)) continue;  // gone with a neighbour
       if (!replace(t)) return false;
     }
@@ -249,7 +252,7 @@ class Mender {
       }
     }
     if (vertices.size() > most_cavity_vertices) return false;
-    CavityFiller filler({faces.begin(), faces.end()}, {vertices.begin(), vertices.end()}, volume, points_);
+    CavityFiller filler({faces.begin(), faces.end()}, {vertices.begin(), vertices.end()}, volume, points_, progress_);
     if (!filler.fill()) return false;
     for (const Index t : cavity) mesh_.remove(t);
     for (const Tetrahedron& t : filler.filling()) mesh_.add(t);
@@ -260,6 +263,7 @@ class Mender {
   LocalMesh& mesh_;
   std::span<const Vec3> points_;
   MendReport& report_;
+  const Progress& progress_;
 };
 
 }  // namespace
@@ -286,17 +290,19 @@ bool mend_tetrahedra(std::vector<Tetrahedron>& tetrahedra, std::span<const Vec3>
   if (report.bad > most) return false;
   // Everything that a cavity may need: what touches a neighbour of a bad one.
   std::vector<bool> wider = marked;
+  std::size_t looked = 0;
   for (const Tetrahedron& t : tetrahedra) {
+    if (looked++ % tetrahedra_per_range == 0) progress.check();
     if (!marked[t[0]] && !marked[t[1]] && !marked[t[2]] && !marked[t[3]]) continue;
     for (const Index v : t) wider[v] = true;
   }
-  LocalMesh mesh(tetrahedra, wider);
+  LocalMesh mesh(tetrahedra, wider, progress);
   std::vector<Index> bad;
   for (Index t = 0; t < mesh.size(); ++t) {
     if (sign(mesh.tetrahedron(t), points) <= 0) bad.push_back(t);
   }
-  Mender mender(mesh, points, report);
-  const bool mended = mender.mend(std::move(bad), progress);
+  Mender mender(mesh, points, report, progress);
+  const bool mended = mender.mend(std::move(bad));
   mesh.give_back(tetrahedra);
   std::sort(report.lost.begin(), report.lost.end());
   return mended;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace atomesh {
 
@@ -20,7 +21,8 @@ namespace atomesh {
 // (no inverted cell, the same volume and hull area) and is Delaunay as validate() means it; should the check fail, as
 // it may where slivers of every thickness stand side by side, nothing is changed. Returns the number of slivers
 // removed.
-std::size_t remove_slivers(std::vector<Tetrahedron>& tetrahedra, std::span<const Vec3> points);
+std::size_t remove_slivers(std::vector<Tetrahedron>& tetrahedra, std::span<const Vec3> points,
+                           Progress& progress = no_progress());
 
 inline constexpr double sliver_thickness = 1e-8;
 inline constexpr double sliver_sphere_tolerance = 1e-7;

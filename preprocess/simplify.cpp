@@ -152,8 +152,7 @@ void simplify(TetMesh& mesh, Surface& surface, const Atoms& atoms, const Defects
     values_there.push_back(values[v]);
   }
   const std::vector<Index> old_index = drop_vertices(mesh, gone);
-  put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size());
-  progress.check();
+  put_in_canonical_order(mesh.tetrahedra, mesh.vertices.size(), progress);
 
   const std::vector<DefectValues> values_after = vertex_defects(mesh, atoms, defects);
   for (std::size_t v = 0; v < old_index.size(); ++v) {

@@ -114,7 +114,7 @@ class Collapser {
   // Tetrahedra of a worse shape than `floor` are not made.
   std::size_t run(double floor) {
     floor_ = floor;
-    VertexQueue queue(mesh_, free_);
+    VertexQueue queue(mesh_, free_, progress_);
     std::size_t removed = 0;
     std::size_t steps = 0;
     for (VertexQueue::Waiting next; queue.next(next);) {

@@ -9,7 +9,7 @@
 namespace atomesh {
 
 std::size_t remove_vertices(StarMesh& mesh, std::vector<std::uint8_t>& free, Progress& progress) {
-  VertexQueue queue(mesh, free);
+  VertexQueue queue(mesh, free, progress);
   Star star;
   DelaunayHole hole;
   std::vector<Index> cells;

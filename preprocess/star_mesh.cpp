@@ -75,9 +75,11 @@ StarMesh::StarMesh(std::vector<Tetrahedron> tetrahedra, const std::vector<Vec3>&
   }
 }
 
-std::vector<double> StarMesh::shortest_edges() const {
+std::vector<double> StarMesh::shortest_edges(const Progress& progress) const {
   std::vector<double> shortest(vertices_.size(), 0.0);
+  std::size_t looked = 0;
   for (const Tetrahedron& tet : tetrahedra_) {
+    if (looked++ % 4096 == 0) progress.check();
     if (tet[0] == no_index) continue;
     for (int i = 0; i < 4; ++i) {
       for (int j = i + 1; j < 4; ++j) {

@@ -52,7 +52,7 @@ class StarMesh {
   bool used(Index v) const { return corner_of_[v] != no_index; }
 
   // Squared, of each vertex that is used; 0 for the others.
-  std::vector<double> shortest_edges() const;
+  std::vector<double> shortest_edges(const Progress& progress = no_progress()) const;
 
   // Walks all around v, which must be inside: used and not on the surface.
   void gather(Index v, Star& star);

@@ -10,8 +10,12 @@ constexpr double no_entry = -1.0;
 
 }  // namespace
 
-VertexQueue::VertexQueue(const StarMesh& mesh, const std::vector<std::uint8_t>& free)
-    : mesh_(mesh), free_(free), refused_(free.size(), 0.0), patience_(free.size(), 0), key_(mesh.shortest_edges()) {
+VertexQueue::VertexQueue(const StarMesh& mesh, const std::vector<std::uint8_t>& free, const Progress& progress)
+    : mesh_(mesh),
+      free_(free),
+      refused_(free.size(), 0.0),
+      patience_(free.size(), 0),
+      key_(mesh.shortest_edges(progress)) {
   std::vector<Waiting> waiting;
   for (Index v = 0; v < free.size(); ++v) {
     if (free[v] != 0) waiting.push_back({key_[v], v});

@@ -23,7 +23,7 @@ class VertexQueue {
   };
 
   // Those with free[v] = 1; `free` is followed from then on.
-  VertexQueue(const StarMesh& mesh, const std::vector<std::uint8_t>& free);
+  VertexQueue(const StarMesh& mesh, const std::vector<std::uint8_t>& free, const Progress& progress);
 
   // False when nobody is left whom it makes sense to try.
   bool next(Waiting& waiting);
