@@ -241,6 +241,21 @@ TEST(Tetrahedralize, AutoSaysWhatItChoseAndWhy) {
   EXPECT_FALSE(report.why.empty());
 }
 
+TEST(Tetrahedralize, AutoLeavesManyGrainsToDelaunay) {
+  const UnitCell& cell = test::lattice("fcc").cell;
+  const Atoms atoms = test::cut_block(cell, 9, 9, 9);
+  Crystal crystal{{cell}, {}};
+  TetrahedralizeReport report;
+  tetrahedralize(atoms, crystal, 0.0, {}, report);
+  EXPECT_EQ(report.mesher, "pattern") << report.why;
+  // The same crystal under many names.
+  for (int grain = 0; grain < 40; ++grain) crystal.grains.push_back(cell);
+  crystal.grain_of.assign(atoms.size(), 0);
+  tetrahedralize(atoms, crystal, 0.0, {}, report);
+  EXPECT_EQ(report.mesher, "delaunay");
+  EXPECT_NE(report.why.find("grains"), std::string::npos) << report.why;
+}
+
 TEST(Tetrahedralize, UnknownMesherNamesTheNearest) {
   TetrahedralizeReport report;
   try {
