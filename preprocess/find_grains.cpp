@@ -58,14 +58,13 @@ class GrainFinder {
     if (cells_.size() > 1) std::erase_if(order, [&](std::size_t g) { return size[g] < least_; });
     std::vector<std::uint16_t> name(cells_.size(), no_grain);
     for (std::size_t n = 0; n < order.size(); ++n) {
+      progress.check();
       const std::size_t g = order[n];
       name[g] = static_cast<std::uint16_t>(n);
       search.cells.push_back(cells_[g]);
       // Atoms that two grains claimed are in both sums; each counts once.
-      std::size_t own = 0;
-      for (std::size_t i = 0; i < atoms_.size(); ++i) {
-        own += claims_[g][i] != 0 && (cells_.size() == 1 || grain_of_[i] == g) ? 1 : 0;
-      }
+      const auto own = static_cast<std::size_t>(std::count_if(
+          claims_[g].begin(), claims_[g].end(), [&](Index i) { return cells_.size() == 1 || grain_of_[i] == g; }));
       const Explained& sum = sums_[g];
       const double share = sum.atoms == 0 ? 0.0 : static_cast<double>(own) / static_cast<double>(sum.atoms);
       search.on_site += own;
@@ -86,10 +85,13 @@ class GrainFinder {
     const auto grain = static_cast<std::uint16_t>(cells_.size());
     cells_.push_back(cell);
     sums_.push_back(claims.sum);
-    claims_.push_back(claims.on_site);
+    std::vector<Index>& claimed = claims_.emplace_back();
     for (std::size_t i = 0; i < atoms_.size(); ++i) {
-      if (grain_of_[i] == no_grain && claims.on_site[i] != 0) grain_of_[i] = grain;
+      if (claims.on_site[i] == 0) continue;
+      claimed.push_back(static_cast<Index>(i));
+      if (grain_of_[i] == no_grain) grain_of_[i] = grain;
     }
+    claimed.shrink_to_fit();
     for (std::size_t b = 0; b < blocks_.size(); ++b) filled_[b] |= claims.filled[b];
   }
 
@@ -203,14 +205,18 @@ class GrainFinder {
     }
   }
 
+  bool claims(std::size_t grain, Index atom) const {
+    return std::binary_search(claims_[grain].begin(), claims_[grain].end(), atom);
+  }
+
   // Of the grains that claim the atom, the one that claims most of its neighbours.
   std::uint16_t claimed(Index atom, const NeighbourGrid& grid, const std::vector<Index>& slots) const {
     std::uint16_t best = no_grain;
     std::size_t most = 0;
     for (std::size_t g = 0; g < claims_.size(); ++g) {
-      if (claims_[g][atom] == 0) continue;
+      if (!claims(g, atom)) continue;
       std::size_t count = 1;
-      for (const Index s : slots) count += claims_[g][grid.point(s)];
+      for (const Index s : slots) count += claims(g, grid.point(s)) ? 1 : 0;
       if (count <= most) continue;
       most = count;
       best = static_cast<std::uint16_t>(g);
@@ -249,7 +255,9 @@ class GrainFinder {
   std::vector<Mat3> symmetries_;
   std::vector<FittedCell> cells_;
   std::vector<Explained> sums_;
-  std::vector<std::vector<std::uint8_t>> claims_;  // of each grain, of each atom: it sits on a site
+  // Of each grain: the atoms that sit on its sites, ascending. Grains share few atoms, so that all of them together
+  // take little more than 4 bytes an atom, however many grains there are.
+  std::vector<std::vector<Index>> claims_;
   std::vector<std::uint16_t> grain_of_;
   std::vector<std::uint8_t> filled_;  // of each block, by any grain
 };
