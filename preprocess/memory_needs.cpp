@@ -47,6 +47,10 @@ std::uint64_t memory_to_extract_surface(std::uint64_t vertices, std::uint64_t te
   return scaled(9.0, tetrahedra) + 8 * vertices;  // SharedFaces and a byte of marks
 }
 
+std::uint64_t memory_to_simplify(std::uint64_t vertices, std::uint64_t tetrahedra) {
+  return scaled(34.0, tetrahedra) + 110 * vertices;  // the faces behind each other; the queue of the vertices
+}
+
 std::uint64_t memory_to_quantify_defects(std::uint64_t atoms) {
   return scaled(200.0, atoms);  // measured: 124 in rock salt, 150 in strained copper
 }

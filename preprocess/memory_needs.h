@@ -20,6 +20,8 @@ std::uint64_t memory_to_read(std::uint64_t atoms, std::uint64_t columns, bool so
 std::uint64_t memory_to_mesh(std::string_view mesher, std::uint64_t points);
 std::uint64_t memory_to_carve(std::uint64_t vertices, std::uint64_t tetrahedra);
 std::uint64_t memory_to_extract_surface(std::uint64_t vertices, std::uint64_t tetrahedra);
+// Of a mesh most of whose vertices may go.
+std::uint64_t memory_to_simplify(std::uint64_t vertices, std::uint64_t tetrahedra);
 // A neighbourhood as the default one, of a sample that mostly fits its cell.
 std::uint64_t memory_to_quantify_defects(std::uint64_t atoms);
 

@@ -203,6 +203,8 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
       report.notes.emplace_back(
           "nothing was carved: the sample was thinned out, so no radius can be told from it; give one with --carve");
     } else if (carves) {
+      require_memory_for("carve", material.mesh.tetrahedra.size(), "tetrahedra",
+                         memory_to_carve(material.mesh.vertices.size(), material.mesh.tetrahedra.size()));
       material.mesh = stage(
           "carve", [&] { return carve(std::move(material.mesh), options.carve_options, report.carve, progress); });
     }
@@ -215,7 +217,7 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
 
   if (wanted.defects && !options.scalar.empty()) {
     material.defects = stage("assign_scalar", [&] { return assign_scalar(material.atoms, options.scalar); });
-  } else if (wanted.defects && crystal.known() && reduces(options.reduce)) {
+  } else if (wanted.defects && reduces(options.reduce)) {
     report.notes.emplace_back(
         "defects were not quantified: a reduced sample no longer has the crystal's neighbours; choose what to show "
         "with --scalar");
@@ -233,6 +235,8 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
 
   if (options.simplify && wanted.tetrahedra) {
     if (options.before_simplify) options.before_simplify(material);
+    require_memory_for("simplify", material.mesh.tetrahedra.size(), "tetrahedra",
+                       memory_to_simplify(material.mesh.vertices.size(), material.mesh.tetrahedra.size()));
     stage("simplify", [&] {
       simplify(material.mesh, material.surface, material.atoms, material.defects, options.simplify_options,
                report.simplify, progress);

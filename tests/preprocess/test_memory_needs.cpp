@@ -6,6 +6,7 @@
 #include "core/surface.h"
 #include "preprocess/carve.h"
 #include "preprocess/memory_needs.h"
+#include "preprocess/simplify.h"
 #include "preprocess/tetrahedralize.h"
 #include "samples/samples.h"
 
@@ -48,6 +49,10 @@ TEST(MemoryNeeds, AreWhatTheStagesTake) {
   Surface surface;
   const std::uint64_t surfacing = taken_by([&] { surface = extract_surface(mesh); });
   expect_enough(memory_to_extract_surface(vertices, tetrahedra), surfacing, "extract_surface");
+  SimplifyReport simplify_report;
+  const std::size_t carved = mesh.tetrahedra.size();
+  const std::uint64_t simplifying = taken_by([&] { simplify(mesh, surface, sample.atoms, {}, {}, simplify_report); });
+  expect_enough(memory_to_simplify(vertices, carved), simplifying, "simplify");
 }
 
 TEST(MemoryNeeds, GrowWithTheCounts) {
