@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,47 @@ TEST(House, HeavyHeadersStayInTheirSourceFiles) {
     }
     EXPECT_LE(users.size(), library.files) << library.name << " is in " << *users.begin() << " and " << *users.rbegin();
   }
+}
+
+// The classes that a source defines in namespaces that others see too, by their full names.
+std::set<std::string> types_of(std::istream& source) {
+  static const std::regex opening(R"(^(inline )?namespace( [A-Za-z0-9_:]+)? \{$)");
+  static const std::regex closing(R"(^\}  // namespace)");
+  static const std::regex type(R"(^(class|struct|enum class) ([A-Za-z0-9_]+)( final)?( : .*)?( \{.*)$)");
+  std::vector<std::string> spaces;
+  std::set<std::string> types;
+  for (std::string line; std::getline(source, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, opening)) {
+      spaces.push_back(match[2].str().empty() ? "" : match[2].str().substr(1));
+    } else if (std::regex_search(line, closing) && !spaces.empty()) {
+      spaces.pop_back();
+    } else if (std::regex_match(line, match, type)) {
+      if (std::find(spaces.begin(), spaces.end(), "") != spaces.end()) continue;
+      std::string name;
+      for (const std::string& space : spaces) name += space + "::";
+      types.insert(name + match[2].str());
+    }
+  }
+  return types;
+}
+
+// The linker keeps one of two inline functions or destructors of one name, and says nothing.
+TEST(House, NoTwoTypesHaveOneName) {
+  std::istringstream sample(
+      "namespace a {\nstruct One {\nstruct Two;\nnamespace {\nclass Mine {\n}  // namespace\n"
+      "class Three : public One {\n}  // namespace a\n");
+  EXPECT_EQ(types_of(sample), (std::set<std::string>{"a::One", "a::Three"}));
+  std::map<std::string, std::string> home;
+  for (const SourceFile& file : sources()) {
+    if (file.room == "tests") continue;
+    std::ifstream source(root / file.path);
+    for (const std::string& type : types_of(source)) {
+      const auto [place, fresh] = home.try_emplace(type, file.path);
+      EXPECT_TRUE(fresh) << type << " is defined in " << place->second << " and in " << file.path;
+    }
+  }
+  EXPECT_GT(home.size(), 100U) << "the test does not see the types";
 }
 
 TEST(House, SharedCodeOfTheRenderersStandsAlone) {
