@@ -205,9 +205,15 @@ class Finder {
     for (const ExtraAtom& extra : defects.extras) {
       if (extra.atom >= counts_.atoms) report("extras", "atom " + std::to_string(extra.atom) + " does not exist");
     }
+    std::vector<Index> extras;
+    for (const ExtraAtom& extra : defects.extras) extras.push_back(extra.atom);
+    std::sort(extras.begin(), extras.end());
     for (const Substitution& substitution : defects.substitutions) {
       if (substitution.atom >= counts_.atoms) {
         report("substitutions", "atom " + std::to_string(substitution.atom) + " does not exist");
+      }
+      if (!std::binary_search(extras.begin(), extras.end(), substitution.atom)) {
+        report("substitutions", "atom " + std::to_string(substitution.atom) + " is not among the extra atoms");
       }
       if (substitution.expected >= m_.atoms.species_table.size()) {
         report("substitutions", "a species that is not in the table");

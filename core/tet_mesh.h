@@ -17,7 +17,7 @@ struct TetMesh {
   std::vector<Vec3> vertices;           // Å
   std::vector<Tetrahedron> tetrahedra;  // indices into vertices
   // Vertex → atom (index into Atoms). Several atoms on one exact position share one vertex, which names the first of
-  // them. no_index for a vertex that is no atom. Atoms in no tetrahedron still have a vertex.
+  // them. no_index for a vertex that is no atom. Atoms in no tetrahedron have one too; simplify() takes some.
   std::vector<Index> vertex_atom;
   // True while the tetrahedra are a subset of a Delaunay tetrahedralization of the vertices (carving keeps it): across
   // no face does a vertex lie inside the other tetrahedron's circumsphere by more than delaunay_tolerance of its

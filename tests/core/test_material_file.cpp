@@ -190,6 +190,7 @@ TEST(MaterialFile, AMaterialThatCouldNotBeReadBackIsNotWritten) {
   refuses("vacancy species", [&](Material& m) { m.defects.vacancies[0].species = 3; });
   refuses("extra", [&](Material& m) { m.defects.extras[0].atom = 40; });
   refuses("substitution", [&](Material& m) { m.defects.substitutions[0].atom = 40; });
+  refuses("substitution that is no extra atom", [&](Material& m) { m.defects.extras.clear(); });
   refuses("substitution's species", [&](Material& m) { m.defects.substitutions[0].expected = 3; });
   refuses("substitution's vacancy", [&](Material& m) { m.defects.substitutions[0].vacancy = 2; });
   EXPECT_THROW(write_material(folder.file("a.vtu"), random_material(1)), UsageError);
