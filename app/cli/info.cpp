@@ -1,6 +1,7 @@
 // atomesh info FILE: what a file holds, how it came to be, whether it is sound.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,7 +14,7 @@
 #include "app/cli/species_count.h"
 #include "app/cli/text_table.h"
 #include "core/crb_format.h"
-#include "core/crt_material.h"
+#include "core/text_file.h"
 #include "preprocess/find_unit_cell.h"
 
 namespace atomesh::cli {
@@ -117,15 +118,34 @@ Json unit_cell_json(const Material& material, const std::optional<SpaceGroup>& g
   return json;
 }
 
-// Of the file format; a reader accepts no other. Atoms files have none.
-Json version_of(const std::string& kind) {
-  return kind == "crb" ? Json(crb_version) : kind == "crt" ? Json(crt_version) : Json();
+// Of the file format, as it stands in the file, which has been read already. Atoms files have none.
+Json version_of(const std::string& kind, const std::string& path) {
+  if (kind != "crb" && kind != "crt") return {};
+  const MappedFile file(path);
+  if (kind == "crb") {
+    CrbHeader header{};
+    std::memcpy(&header, file.bytes().data(), std::min(sizeof(header), file.bytes().size()));
+    return header.version;
+  }
+  std::string_view line = file.bytes().substr(0, file.bytes().find('\n'));
+  next_field(line);  // the name of the format
+  std::int64_t version = 0;
+  parse_integer(next_field(line), version);
+  return version;
 }
 
 // "crb" and "crt" are material files; an atoms file says how it was read.
 std::string kind_of(const std::string& path, const LoadedMaterial& loaded) {
   if (loaded.report) return loaded.report->read.format;
   return std::filesystem::path(path).extension() == ".crt" ? "crt" : "crb";
+}
+
+// What a cell that was found on the way explains; "" for others.
+std::string found_text(const LoadedMaterial& loaded) {
+  if (!loaded.report || !loaded.report->find_cell.found) return "";
+  const FindCellReport& found = loaded.report->find_cell;
+  return fmt::format(", found; explains {:.4g} % of the atoms in {} {}", 100.0 * found.explained, found.grains.size(),
+                     found.grains.size() == 1 ? "grain" : "grains");
 }
 
 void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, const std::vector<SectionInfo>& sections,
@@ -145,7 +165,7 @@ void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, co
                   box.periodic[1] ? "y" : "-", box.periodic[2] ? "z" : "-");
   }
   if (material.unit_cell) {
-    session.print("unit cell    {} basis atoms", material.unit_cell->basis.size());
+    session.print("unit cell    {} basis atoms{}", material.unit_cell->basis.size(), found_text(loaded));
     if (group) {
       session.print("space group  {} (no. {}); conventional a {:.5g} b {:.5g} c {:.5g} Å, α {:.5g} β {:.5g} γ {:.5g}°",
                     group->symbol, group->number, group->a, group->b, group->c, group->alpha, group->beta,
@@ -207,7 +227,7 @@ int run_info(const InfoArguments& arguments, const CLI::App& app, Session& sessi
     for (const std::string& problem : problems) problem_list.push(problem);
     session.write_json(Json::object({{"file", arguments.input},
                                      {"kind", kind},
-                                     {"version", version_of(kind)},
+                                     {"version", version_of(kind, arguments.input)},
                                      {"bytes", std::filesystem::file_size(arguments.input)},
                                      {"atoms", material.atoms.size()},
                                      {"tetrahedra", material.mesh.tetrahedra.size()},

@@ -26,6 +26,7 @@ LoadedMaterial load_material(const std::string& path, const MaterialParts& wante
 
 void show_notes(const PipelineReport& report, Session& session) {
   for (const std::string& note : report.read.notes) session.note(note);
+  for (const std::string& note : report.find_cell.notes) session.note(note);
   for (const std::string& note : report.defects.notes) session.note(note);
   for (const std::string& note : report.notes) session.note(note);
 }

@@ -75,7 +75,8 @@ Json skipped_json(const BatchRow& row) {
                                  {"vacancy_atoms", count_of(p, "vacancy_atoms")},
                                  {"extra_atoms", count_of(p, "extra_atoms")},
                                  {"vacancies", count_of(p, "vacancies")},
-                                 {"extras", count_of(p, "extras")}})},
+                                 {"extras", count_of(p, "extras")},
+                                 {"substitutions", count_of(p, "substitutions")}})},
        {"output", Json::object({{"file", row.job.output}, {"bytes", fs::file_size(row.job.output)}})}});
 }
 
@@ -121,7 +122,8 @@ void try_make(BatchRow& row, const PreprocessSettings& settings, bool force, Ses
   } catch (const std::bad_alloc&) {
     const UnavailableError error("the memory ran out; " + memory_advice());
     fail("failed", error.what(), error.exit_code());
-  } catch (const fs::filesystem_error& error) {
+  } catch (const std::exception& error) {
+    // Of a file system or a library: one bad file, not the end of the batch.
     fail("failed", error.what(), Error("").exit_code());
   }
   row.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

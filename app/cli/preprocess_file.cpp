@@ -29,7 +29,9 @@ double megabytes(std::uint64_t bytes) {
 }
 
 // What the stage made, in a few words.
-std::string outcome(const std::string& stage, const Material& material, const PipelineReport& report) {
+std::string outcome(const std::string& stage, const PreprocessedFile& file) {
+  const Material& material = file.material;
+  const PipelineReport& report = file.report;
   if (stage == "read_atoms") {
     std::string text = fmt::format("{} atoms, {}", grouped(report.read.atoms), report.read.format);
     if (report.read.frames > 1) text += fmt::format(", frame {} of {}", report.read.frame, report.read.frames);
@@ -68,6 +70,9 @@ std::string outcome(const std::string& stage, const Material& material, const Pi
     return fmt::format("{} tetrahedra left of {}; {} of {} free vertices removed by {}",
                        grouped(simplify.tetrahedra_after), grouped(simplify.tetrahedra_before),
                        grouped(simplify.removed_vertices), grouped(simplify.free_vertices), simplify.strategy);
+  }
+  if (stage == "certify") {
+    return fmt::format("{} pictures of either mesh", file.pictures);
   }
   if (stage == "measure") {
     return fmt::format("volume {:.6g} Å³, area {:.6g} Å²", report.volume, report.surface_area);
@@ -155,21 +160,35 @@ PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSetti
   PreprocessedFile file;
   file.job = job;
   SimplifyPictures pictures;
+  StageTime certify{"certify", 0.0};
+  std::uint64_t certify_memory = 0;
+  const auto draw = [&](const char* stage, auto&& work) {
+    const auto draw_start = Clock::now();
+    session.progress().stage(stage);
+    reset_peak_memory();
+    work();
+    certify.ms += milliseconds_since(draw_start);
+    certify_memory = std::max(certify_memory, recent_peak_memory());
+  };
   PipelineOptions options = settings.options;
   options.before_simplify = [&](const Material& whole) {
-    session.progress().stage("draw the whole mesh");
-    pictures.draw(whole, session.progress());
+    draw("draw the whole mesh", [&] { pictures.draw(whole, session.progress()); });
   };
   file.material = preprocess(job.input, options, file.report, session.progress());
   if (pictures.drawn()) {
-    session.progress().stage("draw the simplified mesh");
-    file.picture_difference = pictures.compare(file.material, session.progress());
+    draw("draw the simplified mesh",
+         [&] { file.picture_difference = pictures.compare(file.material, session.progress()); });
   }
   Provenance& provenance = file.material.provenance;
   provenance.options = recorded_options(settings, file.report.read.format);
   provenance.options.emplace_back("input_hash", file.report.read.hash);
   file.stages = provenance.stages;
   file.stage_memory = file.report.stage_memory;
+  if (pictures.drawn()) {
+    file.pictures = pictures.count();
+    file.stages.push_back(certify);
+    file.stage_memory.push_back(certify_memory);
+  }
 
   const auto write_start = Clock::now();
   session.progress().stage("write_material");
@@ -213,9 +232,9 @@ std::string stage_table(const PreprocessedFile& file) {
   for (std::size_t i = 0; i < file.stages.size(); ++i) {
     const StageTime& stage = file.stages[i];
     const bool last = stage.name == "write_material";
-    table.row({stage.name, milliseconds(stage.ms), fmt::format("{:.0f}", megabytes(file.stage_memory[i])),
-               last ? fmt::format("{}, {}", file.job.output, byte_size(file.output_bytes))
-                    : outcome(stage.name, file.material, file.report)});
+    table.row(
+        {stage.name, milliseconds(stage.ms), fmt::format("{:.0f}", megabytes(file.stage_memory[i])),
+         last ? fmt::format("{}, {}", file.job.output, byte_size(file.output_bytes)) : outcome(stage.name, file)});
   }
   table.row({"total", milliseconds(file.total_ms), fmt::format("{:.0f}", peak_memory_mb()), ""});
   return table.text();
@@ -232,7 +251,7 @@ Json preprocess_json(const PreprocessedFile& file) {
                                   {"peak_memory_mb", megabytes(file.stage_memory[i])}}));
   }
   Json notes = Json::array();
-  for (const auto* list : {&report.read.notes, &report.defects.notes, &report.notes}) {
+  for (const auto* list : {&report.read.notes, &report.find_cell.notes, &report.defects.notes, &report.notes}) {
     for (const std::string& note : *list) notes.push(note);
   }
   const std::size_t tetrahedra = material.mesh.tetrahedra.size();

@@ -26,11 +26,13 @@ struct PreprocessedFile {
   PreprocessJob job;
   Material material;
   PipelineReport report;
-  std::vector<StageTime> stages;            // with the writing
+  std::vector<StageTime> stages;            // with the certificate's pictures and the writing
   std::vector<std::uint64_t> stage_memory;  // of each: the most memory held while it ran, bytes
   double total_ms = 0.0;
   std::uint64_t output_bytes = 0;
-  SimplifyPictures::Difference picture_difference;  // when it was simplified
+  // When it was simplified: how many pictures were drawn of either mesh (stage "certify"), and how they differ.
+  std::size_t pictures = 0;
+  SimplifyPictures::Difference picture_difference;
 };
 
 // Provenance::options of what is written, but for the hash of the input. `format` as in provenance_options().

@@ -111,6 +111,9 @@ TEST_F(Subcommands, SimplifyingPrintsItsCertificate) {
     EXPECT_EQ(simplify["defect_tetrahedra_identical"], true);
     EXPECT_EQ(simplify["scalar_error"], 0.0);
     EXPECT_LT(simplify["picture_difference"], 1.0 / 255.0);
+    double in_stages = 0.0;
+    for (const json& stage : report["stages"]) in_stages += stage["ms"].get<double>();
+    EXPECT_GT(in_stages, 0.9 * report["total_ms"].get<double>()) << "every stage that takes long is told";
     EXPECT_EQ(run_json({"info", "s.crb"})["valid"], true);
   }
   EXPECT_EQ(run({"preprocess", "s.dat", "-o", "s.crb", "--simplify-by", "magic"}).exit_code, 1);
@@ -279,6 +282,14 @@ TEST_F(Subcommands, InfoSaysWhatIsThere) {
   EXPECT_TRUE(dat["version"].is_null());
   EXPECT_EQ(dat["tetrahedra"], crb["tetrahedra"]);
   EXPECT_NE(run({"info", "d.crb"}).out.find("valid"), std::string::npos);
+  // Without substitutions the text of version 2 is that of version 1.
+  ASSERT_EQ(run({"convert", "d.crb", "v2.crt"}).exit_code, 0);
+  std::string text = place->read("v2.crt");
+  ASSERT_EQ(text.find("\nsubstitutions"), std::string::npos);
+  ASSERT_TRUE(text.starts_with("atomesh-crt 2\n"));
+  place->write("v1.crt", text.replace(0, 14, "atomesh-crt 1\n"));
+  EXPECT_EQ(run_json({"info", "v2.crt"})["version"], 2);
+  EXPECT_EQ(run_json({"info", "v1.crt"})["version"], 1);
 }
 
 TEST_F(Subcommands, ConvertGoesRound) {
