@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/unit_cell.h"
 #include "preprocess/explain_atoms.h"
 #include "preprocess/find_grains.h"
 #include "preprocess/match_orientation.h"
@@ -26,6 +27,8 @@ constexpr double full = 0.9;
 constexpr double good = 0.9;
 // One that explains so much (a grain of many) is no chance: longer cells are not looked for.
 constexpr double some = 0.05;
+// Where a translation holds for so many atoms but no cell is found, what is missing is another direction.
+constexpr double repeats = 0.9;
 // Sites that fewer atoms sit on than this share of the fullest site's are no sites but interstitials'.
 constexpr double least_occupied = 0.5;
 
@@ -249,12 +252,29 @@ std::optional<Candidate> best_candidate(const Atoms& atoms, const FindCellOption
   return best;
 }
 
+// What check_unit_cell() says against it: atoms closer together than rounding, say.
+std::string objection(const UnitCell& cell) {
+  try {
+    check_unit_cell(cell);
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 std::string refusal(const Trials& trials, const Candidate* best, std::size_t atoms, double least) {
   if (best != nullptr) {
     return "no unit cell: the best of " + std::to_string(trials.cells) + " candidates (" +
            std::to_string(best->cell.sites.size()) + " atoms in " + rounded(best->cell.volume(), 1) + " Å³) explains " +
            percent(static_cast<double>(best->claims.sum.atoms) / static_cast<double>(atoms)) +
            " of the atoms, less than the " + percent(least) + " asked for";
+  }
+  if (trials.places == 0) return "no unit cell: " + std::to_string(atoms) + " atoms, as they lie, are too few to tell";
+  if (trials.best_translation > repeats) {
+    return "no unit cell: translations map " + percent(trials.best_translation) +
+           " of the atoms on each other, but none in three independent directions (as of a chain or a layer), or with "
+           "a "
+           "cell of too many atoms";
   }
   return "no unit cell: at " + std::to_string(trials.places) + " places no lattice of translations up to " +
          rounded(trials.reach, 1) + " Å maps the atoms on each other; the best translation holds for " +
@@ -306,11 +326,15 @@ Crystal find_unit_cell(const Atoms& atoms, const FindCellOptions& options, FindC
     report.why = refusal(trials, &*best, atoms.size(), options.least_explained);
     return {};
   }
-  report.found = true;
 
   Crystal crystal;
   const FittedCell& reference = grains.cells.front();
   crystal.grains.push_back(to_unit_cell(atoms, reference));
+  if (const std::string why = objection(crystal.grains[0]); !why.empty()) {
+    report.why = "no unit cell: the best one found is none (" + why + ")";
+    return {};
+  }
+  report.found = true;
   const bool symmetric = make_symmetric(crystal.grains[0], reference.nearest, report, grains.on_site);
   const std::vector<Mat3> symmetries = symmetry_rotations(reference, 0.1 * reference.nearest);
   report.grains.resize(grains.cells.size());

@@ -196,7 +196,10 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
     material.mesh = stage("tetrahedralize", [&] {
       const double radius = carves ? options.carve_options.radius : std::numeric_limits<double>::infinity();
       const Crystal none;
-      return tetrahedralize(material.atoms, reduces(options.reduce) ? none : crystal, radius, options.tetrahedralize,
+      TetrahedralizeOptions mesher = options.tetrahedralize;
+      mesher.must_be_delaunay =
+          options.simplify && wanted.tetrahedra && needs_delaunay(options.simplify_options.strategy);
+      return tetrahedralize(material.atoms, reduces(options.reduce) ? none : crystal, radius, mesher,
                             report.tetrahedralize, progress);
     });
     if (options.carve && !carves) {

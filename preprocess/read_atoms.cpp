@@ -1,9 +1,12 @@
 #include "preprocess/read_atoms.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "core/content_hash.h"
@@ -128,6 +131,22 @@ std::uint64_t hash_of(const Vec3& p, std::uint16_t species) {
   return hash;
 }
 
+// A metre away an atom's place is rounded to a millionth of an Å. What lies farther is in another unit or damaged, and
+// its volumes would overflow.
+void check_places(const std::string& path, const Atoms& atoms, Progress& progress) {
+  constexpr double farthest = 1e10;  // Å
+  for (std::size_t i = 0; i < atoms.size(); ++i) {
+    if (i % 65536 == 0) progress.check();
+    for (int k = 0; k < 3; ++k) {
+      const double x = atoms.positions[i][k];
+      if (std::abs(x) <= farthest) continue;
+      throw InputError(path, 0,
+                       fmt::format("atom {} has {} {:g} Å; expected coordinates within a metre of the origin", i + 1,
+                                   std::array{"x", "y", "z"}[static_cast<std::size_t>(k)], x));
+    }
+  }
+}
+
 // Indices of the atoms that equal no earlier one. Open addressing; a slot holds the upper half of the hash beside the
 // index, so that the positions are looked at only for likely duplicates, and slots are fetched ahead of their use.
 std::vector<Index> distinct_atoms(const Atoms& atoms, Progress& progress) {
@@ -189,6 +208,7 @@ ReadResult read_atoms(const std::string& path, const ReadOptions& options, Progr
   }
   ReadReport& report = result.report;
   if (result.atoms.positions.empty()) throw InputError(path, 0, "holds no atoms; expected at least one");
+  check_places(path, result.atoms, progress);
   const std::vector<Index> kept = distinct_atoms(result.atoms, progress);
   if (!kept.empty()) {
     report.duplicates = result.atoms.size() - kept.size();

@@ -32,9 +32,10 @@ struct ReadResult {
 // that is damaged is an error only when it, or the last one, is asked for. LAMMPS atoms come in ascending order of
 // their ids, others in that of the file.
 // Exact duplicates (same species, same position bits; -0 is 0) are dropped and counted. Throws InputError "FILE:LINE:
-// expected …, got …" for anything malformed: wrong field count, a number that is none, NaN or infinity, a count that
-// does not match, more than 2^32-2 atoms, no atoms at all. Throws UsageError for an unknown format, a frame the file
-// does not have, or too few type_names.
+// expected …, got …" for anything malformed: wrong field count, a number expected …, got …" for anything malformed:
+// wrong field count, a number that is none, NaN or infinity, a count that does not match, more than 2^32-2 atoms, no
+// atoms at all, an atom farther than a metre from the origin. more than 2^32-2 atoms, no atoms at all. Throws
+// UsageError for an unknown format, a frame the file does not have, or too few type_names.
 ReadResult read_atoms(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
 
 std::vector<std::string> read_format_names();

@@ -22,7 +22,7 @@ void check_options(const TetMesh& mesh, const SimplifyOptions& options) {
     throw UsageError("unknown way to simplify \"" + options.strategy + "\"; " +
                      (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") + "There are collapse and remove");
   }
-  if (options.strategy == "remove" && !mesh.delaunay) {
+  if (needs_delaunay(options.strategy) && !mesh.delaunay) {
     throw UsageError("vertices can be removed from a Delaunay mesh only, and this one is not; use \"collapse\"");
   }
 }
@@ -182,6 +182,10 @@ void simplify(TetMesh& mesh, Surface& surface, const Atoms& atoms, const Defects
 
 std::vector<std::string> simplify_strategies() {
   return {"collapse", "remove"};
+}
+
+bool needs_delaunay(const std::string& strategy) {
+  return strategy == "remove";
 }
 
 }  // namespace atomesh

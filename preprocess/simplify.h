@@ -53,5 +53,7 @@ void simplify(TetMesh& mesh, Surface& surface, const Atoms& atoms, const Defects
               const SimplifyOptions& options, SimplifyReport& report, Progress& progress = no_progress());
 
 std::vector<std::string> simplify_strategies();
+// Whether the strategy can take only a mesh that is Delaunay.
+bool needs_delaunay(const std::string& strategy);
 
 }  // namespace atomesh

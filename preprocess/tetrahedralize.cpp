@@ -75,7 +75,7 @@ bool may_stamp(const TetMesh& mesh, const Crystal& crystal, double carving_radiu
   return report.why.empty();
 }
 
-void stamp(const Atoms& atoms, const Crystal& crystal, double carving_radius, TetMesh& mesh,
+void stamp(const Atoms& atoms, const Crystal& crystal, double carving_radius, bool must_be_delaunay, TetMesh& mesh,
            TetrahedralizeReport& report, Progress& progress) {
   LatticeSites sites;
   if (report.merged_vertices == 0) {
@@ -87,8 +87,16 @@ void stamp(const Atoms& atoms, const Crystal& crystal, double carving_radius, Te
     }
     sites = assign_lattice_sites(atoms.subset(mesh.vertex_atom), of_vertices, {}, progress);
   }
-  const PatternOptions options{.largest_radius = carving_radius};
+  PatternOptions options{.largest_radius = carving_radius};
+  const bool sited = !sites.patches.empty();
+  // No share is small enough: the tolerant way is not taken.
+  if (must_be_delaunay) options.most_off_sites = -1.0;
   mesh.tetrahedra = tetrahedralize_pattern(mesh.vertices, std::move(sites), options, report.pattern, progress);
+  const PatternReport& told = report.pattern;
+  const bool too_few = told.in_place < options.least_in_place && told.undisturbed < options.least_undisturbed_alone;
+  if (must_be_delaunay && sited && !told.done && too_few) {
+    report.pattern.why = "it would not be Delaunay, as removing vertices needs it: too few atoms are on their sites";
+  }
   if (report.pattern.done) mesh.delaunay = report.pattern.delaunay;
 }
 
@@ -112,7 +120,7 @@ TetMesh tetrahedralize(const Atoms& atoms, const Crystal& crystal, double carvin
 
   report.why = "asked for";
   if (options.mesher == "pattern" || (options.mesher == "auto" && may_stamp(mesh, crystal, carving_radius, report))) {
-    stamp(atoms, crystal, carving_radius, mesh, report, progress);
+    stamp(atoms, crystal, carving_radius, options.must_be_delaunay, mesh, report, progress);
   }
   if (report.pattern.done) {
     report.mesher = "pattern";

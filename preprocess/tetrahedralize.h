@@ -17,6 +17,8 @@ struct TetrahedralizeOptions {
   // "delaunay" (CGAL), "tetgen", "pattern" (tetrahedralize_pattern.h), or "auto": the pattern where the crystal allows
   // it, else Delaunay.
   std::string mesher = "auto";
+  // Who will remove vertices needs a mesh that is Delaunay: the pattern gives way where it would not be.
+  bool must_be_delaunay = false;
 };
 
 struct TetrahedralizeReport {

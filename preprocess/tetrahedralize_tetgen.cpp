@@ -38,6 +38,30 @@ bool span_space(std::span<const Vec3> points) {
                      [&](const Vec3& p) { return orientation(points[0], *second, *third, p) != 0; });
 }
 
+// TetGen compares lengths with 1e-8 of the largest; of points that are flatter it makes nothing, or crashes.
+bool too_flat(std::span<const Vec3> points) {
+  constexpr double flat = 1e-7;
+  const auto farthest = [&](auto&& distance) {
+    const Vec3* best = &points[0];
+    double most = distance(points[0]);
+    for (const Vec3& p : points) {
+      const double d = distance(p);
+      if (d > most) {
+        most = d;
+        best = &p;
+      }
+    }
+    return std::pair(*best - points[0], most);
+  };
+  const auto [along, length] = farthest([&](const Vec3& p) { return glm::distance(p, points[0]); });
+  const Vec3 axis = along / length;
+  const auto [across, width] = farthest([&](const Vec3& p) { return glm::length(glm::cross(axis, p - points[0])); });
+  if (!(width > flat * length)) return true;
+  const Vec3 normal = glm::normalize(glm::cross(axis, across));
+  const auto [up, height] = farthest([&](const Vec3& p) { return std::abs(glm::dot(normal, p - points[0])); });
+  return !(height > flat * length);
+}
+
 }  // namespace
 
 std::vector<Tetrahedron> delaunay_tetgen(std::span<const Vec3> points, TetrahedralizeReport& report,
@@ -46,6 +70,10 @@ std::vector<Tetrahedron> delaunay_tetgen(std::span<const Vec3> points, Tetrahedr
   if (points.size() < 4 || !span_space(points)) return tetrahedra;
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<int>::max() / 8)) {
     throw Error("TetGen counts in 31 bits: too many atoms for it; use --mesher delaunay");
+  }
+  if (too_flat(points)) {
+    report.why += "; the atoms are too nearly in one plane for TetGen, so the mesh is CGAL's";
+    return delaunay_cgal(points, progress);
   }
   progress.check();
   require_memory_for("tetrahedralization by TetGen", points.size(), "points", memory_to_mesh("tetgen", points.size()));

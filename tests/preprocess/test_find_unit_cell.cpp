@@ -225,6 +225,26 @@ TEST(FindUnitCell, OptionsAreHeeded) {
   EXPECT_NE(report.why.find("explains"), std::string::npos) << report.why;
 }
 
+TEST(FindUnitCell, RefusesWhatIsNoCell) {
+  // Every atom twice, a hair apart.
+  const UnitCell simple_cubic{{Vec3(2.5, 0, 0), Vec3(0, 2.5, 0), Vec3(0, 0, 2.5)}, {{"Po", Vec3(0.0)}}};
+  Atoms twice = test::cut_block(simple_cubic, 6, 6, 6);
+  for (std::size_t i = twice.size(); i-- > 0;) {
+    twice.positions.push_back(twice.positions[i] + Vec3(1e-8, 0, 0));
+    twice.species.push_back(twice.species[i]);
+  }
+  FindCellReport report;
+  EXPECT_FALSE(find_unit_cell(twice, {}, report).known());
+  EXPECT_FALSE(report.found);
+  EXPECT_NE(report.why.find("same site"), std::string::npos) << report.why;
+
+  // A layer repeats, but not in three directions.
+  std::vector<Vec3> layer;
+  for (int i = 0; i < 400; ++i) layer.emplace_back(2.5 * (i % 20), 2.5 * (i / 20), 0.0);
+  EXPECT_FALSE(find_unit_cell(test::atoms_at(layer), {}, report).known());
+  EXPECT_NE(report.why.find("three independent directions"), std::string::npos) << report.why;
+}
+
 TEST(FindUnitCell, CancelsAndChecks) {
   Atoms atoms = test::cut_block(test::lattice("fcc").cell, 8, 8, 8);
   FindCellReport report;

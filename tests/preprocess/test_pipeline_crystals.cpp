@@ -91,6 +91,28 @@ TEST_F(PipelineCrystals, NoiseDrownsNothingAndLetsTheMeshShrink) {
   EXPECT_TRUE(validate(material.surface, material.mesh).empty());
 }
 
+// Of a noisy crystal the pattern's mesh is not Delaunay: auto does not make what removing vertices cannot take.
+TEST_F(PipelineCrystals, RemovingVerticesGetsADelaunayMesh) {
+  PlantedCrystalOptions hot = planted;
+  hot.noise = 0.01;
+  const Sample sample = make_planted_crystal(hot);
+  PipelineOptions options;
+  options.simplify = true;
+  options.simplify_options.strategy = "remove";
+  for (const char* mesher : {"auto", "pattern"}) {
+    options.tetrahedralize.mesher = mesher;
+    const Material material = run(sample.atoms, sample.unit_cell, options);
+    EXPECT_EQ(report_.tetrahedralize.mesher, "delaunay");
+    EXPECT_NE(report_.tetrahedralize.why.find("Delaunay"), std::string::npos) << report_.tetrahedralize.why;
+    EXPECT_TRUE(material.mesh.delaunay);
+    EXPECT_LT(report_.simplify.tetrahedra_after, report_.simplify.tetrahedra_before / 2);
+  }
+  const Sample cold = make_planted_crystal(planted);
+  options.tetrahedralize.mesher = "auto";
+  run(cold.atoms, cold.unit_cell, options);
+  EXPECT_EQ(report_.tetrahedralize.mesher, "pattern") << report_.tetrahedralize.why;
+}
+
 TEST_F(PipelineCrystals, GrainsBecomeAColumn) {
   // Two crystals of copper, turned against each other about z by 30 degrees, with a plane between.
   const UnitCell& cell = test::lattice("fcc").cell;

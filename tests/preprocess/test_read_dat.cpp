@@ -205,5 +205,16 @@ TEST(ReadAtoms, AFrameThatIsNotThereIsWrongUse) {
   EXPECT_THROW(read_text("a.xyz", "1\n\nC 0 0 0\n", options), UsageError);
 }
 
+TEST(ReadAtoms, RefusesWhatLiesBeyondAnySample) {
+  try {
+    read_text("a.dat", "Na 0 0 0\nCl 0 -1e300 0\n");
+    FAIL() << "was read";
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("atom 2 has y -1e+300"), std::string::npos) << what;
+  }
+  EXPECT_EQ(read_text("a.dat", "Na 1e9 0 0\nCl 0 -1e9 0\n").atoms.size(), 2u);
+}
+
 }  // namespace
 }  // namespace atomesh::test

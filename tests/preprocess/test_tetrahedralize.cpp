@@ -184,6 +184,27 @@ TEST(Tetrahedralize, FewOrFlatAtomsHaveNoTetrahedra) {
   }
 }
 
+// What a line is in a file rounded to some digits.
+TEST(Tetrahedralize, NearlyFlatAtomsAreSound) {
+  for (const double thickness : {1e-15, 1e-12, 1e-9, 1e-6}) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> share(0.0, 30.0);
+    std::vector<Vec3> line, layer;
+    for (int i = 0; i < 100; ++i) {
+      line.emplace_back(share(random), thickness * share(random), thickness * share(random));
+      layer.emplace_back(share(random), share(random), thickness * share(random));
+    }
+    for (const auto& positions : {line, layer}) {
+      const TetMesh judge = mesh_of(test::atoms_at(positions), "delaunay");
+      for (const std::string& mesher : meshers()) {
+        const TetMesh mesh = mesh_of(test::atoms_at(positions), mesher);
+        EXPECT_EQ(validate(mesh), std::vector<std::string>{}) << mesher << ' ' << thickness;
+        EXPECT_NEAR(volume(mesh), volume(judge), 1e-6 * volume(judge)) << mesher << ' ' << thickness;
+      }
+    }
+  }
+}
+
 TEST(Tetrahedralize, OneTetrahedron) {
   for (const std::string& mesher : meshers()) {
     const TetMesh mesh = mesh_of(test::atoms_at({{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 0}}), mesher);
