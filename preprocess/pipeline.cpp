@@ -184,6 +184,11 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
     add_grain_column(crystal, material.atoms);
   }
   if (reduces(options.reduce)) {
+    if (options.tetrahedralize.mesher == "pattern") {
+      throw UsageError(
+          "the pattern mesher stamps a whole crystal, not what masking or thinning out leaves of it; "
+          "take the mesher auto");
+    }
     material.atoms =
         stage("reduce_atoms", [&] { return reduce_atoms(material.atoms, options.reduce, report.reduce, progress); });
   }

@@ -60,6 +60,16 @@ TEST_F(PipelineCrystals, PatternGivesWayWhereItDoesNotServe) {
   options.unit_cell = "none";
   EXPECT_THROW(run(sample.atoms, sample.unit_cell, options), UsageError);
 
+  // What is masked or thinned out has a cell, but no pattern.
+  options.unit_cell = "auto";
+  options.reduce.keep_every = 2;
+  try {
+    run(sample.atoms, sample.unit_cell, options);
+    FAIL() << "was meshed by pattern";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("thinning out"), std::string::npos) << error.what();
+  }
+
   const Atoms gas = test::random_atoms(3000, 40.0, 7);
   run(gas, sample.unit_cell);
   EXPECT_EQ(report_.tetrahedralize.mesher, "delaunay");
