@@ -62,7 +62,9 @@ void require_memory_for(std::string_view stage, std::uint64_t count, std::string
 }
 
 std::string memory_advice() {
-  return "leave atoms out (--mask, --keep-every) or use a machine with more memory";
+  return "leave atoms out (--mask, --keep-every), stamp a crystal instead of triangulating it (--mesher pattern), or "
+         "use "
+         "a machine with more memory";
 }
 
 }  // namespace atomesh

@@ -15,8 +15,8 @@ namespace atomesh {
 // Atoms with `columns` numbers each beside position and species, the search for duplicates included. `sorted`: the
 // reader puts them in another order (LAMMPS, by id).
 std::uint64_t memory_to_read(std::uint64_t atoms, std::uint64_t columns, bool sorted);
-// The Delaunay adapters, "delaunay" (CGAL) or "tetgen", with the passes over their tetrahedra that follow. About 6.8
-// tetrahedra a point.
+// The Delaunay adapters, "delaunay" (CGAL) or "tetgen", with the passes over their tetrahedra that follow, about 6.8
+// tetrahedra a point; or "pattern", labels and stamping, where little is left to CGAL.
 std::uint64_t memory_to_mesh(std::string_view mesher, std::uint64_t points);
 std::uint64_t memory_to_carve(std::uint64_t vertices, std::uint64_t tetrahedra);
 std::uint64_t memory_to_extract_surface(std::uint64_t vertices, std::uint64_t tetrahedra);

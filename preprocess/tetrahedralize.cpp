@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "preprocess/canonical_tetrahedra.h"
+#include "preprocess/memory_needs.h"
 #include "preprocess/remove_slivers.h"
 
 namespace atomesh {
@@ -77,6 +78,7 @@ bool may_stamp(const TetMesh& mesh, const Crystal& crystal, double carving_radiu
 
 void stamp(const Atoms& atoms, const Crystal& crystal, double carving_radius, bool must_be_delaunay, TetMesh& mesh,
            TetrahedralizeReport& report, Progress& progress) {
+  require_memory_for("stamping", mesh.vertices.size(), "atoms", memory_to_mesh("pattern", mesh.vertices.size()));
   LatticeSites sites;
   if (report.merged_vertices == 0) {
     sites = assign_lattice_sites(atoms, crystal, {}, progress);

@@ -8,6 +8,7 @@
 #include "preprocess/memory_needs.h"
 #include "preprocess/simplify.h"
 #include "preprocess/tetrahedralize.h"
+#include "samples/planted_crystal.h"
 #include "samples/samples.h"
 
 namespace atomesh {
@@ -55,10 +56,25 @@ TEST(MemoryNeeds, AreWhatTheStagesTake) {
   expect_enough(memory_to_simplify(vertices, carved), simplifying, "simplify");
 }
 
+TEST(MemoryNeeds, StampingTakesAFractionOfThat) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "a sanitizer's allocator keeps what is freed";
+#endif
+  const Sample sample = make_planted_crystal({.structure = "rock-salt", .atoms = 200'000, .vacancies = 20});
+  TetrahedralizeReport report;
+  const std::uint64_t stamping = taken_by([&] {
+    const TetMesh mesh = tetrahedralize(sample.atoms, {{*sample.unit_cell}, {}}, 0.0, {.mesher = "pattern"}, report);
+  });
+  EXPECT_EQ(report.mesher, "pattern");
+  // What is kept ready for surfaces and defects, which this sample has few of.
+  EXPECT_LE(stamping, memory_to_mesh("pattern", sample.atoms.size()));
+  EXPECT_LE(stamping, memory_to_mesh("delaunay", sample.atoms.size()) / 2);
+}
+
 TEST(MemoryNeeds, GrowWithTheCounts) {
   EXPECT_LT(memory_to_read(1'000'000, 0, false), memory_to_read(1'000'000, 3, false));
   EXPECT_LT(memory_to_read(1'000'000, 3, false), memory_to_read(1'000'000, 3, true));
-  for (const char* mesher : {"delaunay", "tetgen"}) {
+  for (const char* mesher : {"delaunay", "tetgen", "pattern"}) {
     EXPECT_NEAR(static_cast<double>(memory_to_mesh(mesher, 100'000'000)) /
                     static_cast<double>(memory_to_mesh(mesher, 10'000'000)),
                 10.0, 0.1);
