@@ -291,7 +291,9 @@ FeatureSet build_feature_vectors(std::span<const UnitCell> cells, const std::vec
     grains.push_back(cell_sites(cell, table, set));
     const double nearest = nearest_distance(grains.back());
     set.nearest = grains.size() == 1 ? nearest : std::min(set.nearest, nearest);
-    set.radius = std::max(set.radius, neighbourhood * cell.longest_primitive());
+    // Of the reduced vectors: a skew description of a crystal is the same crystal.
+    const UnitCell reduced{reduce_lattice(cell.primitive), {}};
+    set.radius = std::max(set.radius, neighbourhood * reduced.longest_primitive());
   }
   const double floor = std::max(noise_fraction * set.nearest, std::min(rounding, 0.02 * set.nearest));
   set.noise = set.rounding = floor;

@@ -14,7 +14,7 @@
 namespace atomesh {
 
 struct DefectOptions {
-  double neighbourhood = 1.0;  // × the longest primitive vector = neighbourhood radius
+  double neighbourhood = 1.0;  // × the longest of the (reduced) cell vectors = neighbourhood radius
   // Å within which an atom matches a site; 0: 0.3 × the nearest-neighbour distance, or noise_factor × the thermal
   // amplitude where that is more. Above 0.45 × the distance it is limited.
   double tolerance = 0.0;

@@ -259,6 +259,7 @@ RigidParts find_rigid_parts(std::span<const Vec3> points, const LatticeSites& si
   RigidParts parts;
   for (std::size_t p = 0; p < sites.patches.size() && sites.patches[p].atoms >= least_atoms; ++p) {
     progress.check();
+    if (sites.patches.size() + parts.parts + most_pieces >= no_patch) break;  // patches have 16-bit numbers
     RigidLattice lattice;
     lattice.patch = static_cast<std::uint16_t>(p);
     const std::vector<Index> chosen = choose(sites, lattice.patch);
