@@ -193,12 +193,6 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
         stage("reduce_atoms", [&] { return reduce_atoms(material.atoms, options.reduce, report.reduce, progress); });
   }
 
-  if (reduces(options.reduce) && options.tetrahedralize.mesher == "pattern") {
-    throw UsageError(
-        "the pattern mesher needs the whole crystal, which a sample without some of its atoms (--mask, --keep-every) "
-        "no "
-        "longer is; take the mesher auto");
-  }
   // The surface is the boundary of the mesh. Defects need neither.
   if (wanted.tetrahedra || wanted.surface) {
     // What thinning out left has no nearest-neighbour distance to tell matter from emptiness by.
