@@ -329,7 +329,6 @@ TEST(PlantedDefect, SkewAndUnequalCellsSeeTheSame) {
     const Index hole = nearest_atom(plain.atoms, middle(plain.atoms));
     const std::pair<Vec3, std::string> truth(plain.atoms.positions[hole], plain.atoms.species_name(hole));
     const Atoms atoms = without_atoms(plain.atoms, {hole});
-    const double radius = crystal.cell.longest_primitive();
     const Quantified reference = quantify(atoms, crystal.cell);
     UnitCell skew = crystal.cell;
     skew.primitive[2] += 4.0 * skew.primitive[0] - 3.0 * skew.primitive[1];
@@ -342,9 +341,13 @@ TEST(PlantedDefect, SkewAndUnequalCellsSeeTheSame) {
       }
     }
     row.primitive[0] *= 12.0;
-    for (const UnitCell& cell : {skew, row}) {
+    // The radius goes by reduced vectors: a skew cell's are the crystal's own, a long cell's are long.
+    const double longest = crystal.cell.longest_primitive();
+    for (const auto& [cell, neighbourhood] :
+         {std::pair(skew, 1.0),
+          std::pair(row, longest / UnitCell{reduce_lattice(row.primitive), {}}.longest_primitive())}) {
       DefectOptions options;
-      options.neighbourhood = radius / cell.longest_primitive();
+      options.neighbourhood = neighbourhood;
       const Quantified q = quantify(atoms, cell, options);
       expect_vacancies(q, atoms, {truth}, exact, crystal.name);
       expect_extras(q, {}, crystal.name);

@@ -17,14 +17,14 @@ Atoms hard_atoms() {
   atoms.species_table[3].radius = 7.5;
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
-  std::uniform_int_distribution<int> exponent(-40, 40);
+  std::uniform_int_distribution<int> exponent(-40, 33);
   for (int i = 0; i < 2000; ++i) {
     const auto number = [&] { return std::ldexp(mantissa(random), exponent(random)); };
     atoms.positions.push_back({number(), number(), number()});
     atoms.species.push_back(static_cast<std::uint16_t>(i % 7 % 4));
     atoms.ids.push_back(std::int64_t{1} << (i % 63));
   }
-  atoms.positions[0] = {-0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
+  atoms.positions[0] = {-0.0, std::numeric_limits<double>::denorm_min(), std::nextafter(1e10, 0.0)};
   atoms.positions[1] = {1e6 + 1.0 / 3.0, -1e-300, std::numeric_limits<double>::min()};
   atoms.box = {
       {-0.1, 1.0 / 3.0, 1e-9}, {Vec3(10.1, 0, 0), Vec3(1.0 / 7.0, 9, 0), Vec3(-2, 3, 1e3)}, {true, false, true}};
