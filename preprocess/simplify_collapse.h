@@ -13,9 +13,9 @@ namespace atomesh {
 inline constexpr double collapse_near = 1.25;
 
 // Tetrahedra of a worse shape (see shape_of() in cavity.h) than the first are not made, and once nothing more goes
-// without, those worse than the second. In crystals of 10^4 to 10^6 atoms with a few defects 0.03 alone leaves about one
-// in a hundred of the vertices that could go and angles of 2.5° at least; 0.01 after it one in three hundred, and 1°;
-// without any limit it would be one in a thousand and angles as small as rounding lets them.
+// without, those worse than the second. In crystals of 10^4 to 10^6 atoms with a few defects 0.03 alone leaves about
+// one in a hundred of the vertices that could go and angles of 2.5° at least; 0.01 after it one in three hundred, and
+// 1°; without any limit it would be one in a thousand and angles as small as rounding lets them.
 inline constexpr std::array<double, 2> collapse_shapes{0.03, 0.01};
 
 // `free` is 1 for the vertices that may go, which must be inside the mesh; `kept` is 1 for those whose tetrahedra may

@@ -183,8 +183,8 @@ Survey survey_sample(const SampleView& sample, std::size_t grains, std::optional
     const double fitted = agreement(sample, voices, grain, change[g], limit);
     // In noise most atoms agree with either; without it a cell must explain more to be preferred to the one given.
     const double off = largest * sample.features.farthest_counted();
-    const bool better = survey.amplitude > 0.0 ? off >= worth_fitting * limit && fitted >= given
-                                               : 1.0 - fitted < 0.5 * (1.0 - given);
+    const bool better =
+        survey.amplitude > 0.0 ? off >= worth_fitting * limit && fitted >= given : 1.0 - fitted < 0.5 * (1.0 - given);
     if (fitted >= agreeing && better) survey.frame[g] = Mat3(1.0) + change[g];
   }
   return survey;
