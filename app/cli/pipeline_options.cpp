@@ -105,7 +105,8 @@ void add_pipeline_options(CLI::App& app, PipelineOptions& options, const char* t
          [&options](const std::string& text) {
            options.defects.neighbourhood = number("--neighbourhood", text, 1e-6, "a factor above 0");
          },
-         "Radius of the neighbourhood that is compared, in longest primitive vectors [1]")
+         "Radius of the neighbourhood that is compared, in lengths of the longest (reduced) vector of the unit cell "
+         "[1]")
       ->type_name("FACTOR")
       ->group(stages_group);
   add_length(app, tolerance_names, options.defects.tolerance,
