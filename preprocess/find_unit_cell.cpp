@@ -296,7 +296,6 @@ bool make_symmetric(UnitCell& cell, double nearest, const FindCellReport& report
 
 Crystal find_unit_cell(const Atoms& atoms, const FindCellOptions& options, FindCellReport& report, Progress& progress) {
   report = FindCellReport{};
-  progress.stage("find unit cell");
   if (atoms.size() < fewest_atoms) {
     report.why = "no unit cell: " + std::to_string(atoms.size()) + " atoms are too few to tell; at least " +
                  std::to_string(fewest_atoms) + " are needed";
