@@ -28,12 +28,19 @@ struct Provenance {
   std::vector<StageTime> stages;
 };
 
+// One number for each vertex of the mesh: what an imported mesh brings along.
+struct VertexField {
+  std::string name;           // not empty; names differ
+  std::vector<float> values;  // finite
+};
+
 struct Material {
   Atoms atoms;
   std::optional<UnitCell> unit_cell;
   TetMesh mesh;
   Surface surface;
   Defects defects;
+  std::vector<VertexField> fields;
   Provenance provenance;
 };
 

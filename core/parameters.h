@@ -17,8 +17,12 @@ namespace atomesh {
 enum class Mode { volume_surface, volume, surface, xray, atoms };
 enum class Shading { flat, smooth };
 enum class Projection { perspective, parallel };
-// How a ray's segment in a cell is integrated in the modes volume-surface and volume.
-enum class Integrator { exact, sampled };
+// How a ray's segment in a cell is integrated in the modes volume-surface and volume, from its two ends.
+//   exact: closed form; colour and opacity are linear between the knots of the colour map, and every knot counts
+//   linear: closed form of colour and opacity that are linear from end to end, knots within the cell left out
+//   preintegrated: as linear, its one integral looked up in a table (partial pre-integration, Moreland & Angel 2004)
+//   sampled: midpoint samples (the seed's)
+enum class Integrator { exact, linear, preintegrated, sampled };
 
 // Lights are fixed to the viewer: position in the camera's axes (x right, y up, z towards the viewer) about the
 // sample's centre, in units of the sample's bounding radius.

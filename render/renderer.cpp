@@ -108,6 +108,14 @@ void lay_background(Image& image, const Vec4f& background) {
 
 }  // namespace
 
+Image Renderer::draw(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
+                     const Channels& channels, Progress& progress) const {
+  Image image(camera.width, camera.height);
+  prepare(scene, camera, parameters, whole_picture(camera), stats, progress)
+      ->draw({}, image, stats, channels, progress);
+  return image;
+}
+
 const Renderer& find_renderer(std::string_view name) {
   for (const Entry& entry : registry()) {
     if (entry.name == name || name == "auto") return entry.get();

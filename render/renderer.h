@@ -19,6 +19,27 @@ struct RenderStats {
   std::uint64_t steps = 0;  // ray–primitive intersections that contributed (ray–tetrahedron steps in the volume modes)
 };
 
+// A rectangle of a picture's pixels.
+struct PixelWindow {
+  int left = 0;  // column of its first pixel in the picture
+  int top = 0;   // row
+  int width = 0;
+  int height = 0;
+};
+// All of the camera's picture.
+inline PixelWindow whole_picture(const Camera& camera) {
+  return {0, 0, camera.width, camera.height};
+}
+
+// Every so-many-th pixel of the picture: those with column ≡ column_phase (mod column_stride), and rows alike. Strides
+// are 1, 2, 4 or 8; columns and rows count from the picture's first, not the window's.
+struct PixelLattice {
+  int column_stride = 1;
+  int row_stride = 1;
+  int column_phase = 0;
+  int row_phase = 0;
+};
+
 // Optional per-pixel outputs beside the colour, row-major like the image; filled when the caller sets the pointer.
 struct Channels {
   std::vector<float>* thickness = nullptr;  // xray: Å of the ray inside the sample
@@ -28,15 +49,35 @@ struct Channels {
       nullptr;  // surface: triangle, atoms: atom (Ball::atom) of the nearest hit; no_index where none
 };
 
+// A window of one view of one scene, prepared: projected, sorted into tiles, whatever the renderer needs to draw any of
+// its pixels, as often as asked and in any portions. Keeps references to scene, camera and parameters.
+//
+// The value of a pixel is the same to the last bit whichever window it was prepared in, whichever lattice it is drawn
+// with, and for any number of threads: pictures drawn progressively or in passes are the direct one.
+class Frame {
+ public:
+  virtual ~Frame() = default;
+  // Sets the lattice's pixels in `image`, which has the window's size (its first pixel is the window's), and leaves the
+  // others as they are. Premultiplied RGB and coverage A, 0 where the ray meets nothing. A channel the mode does not
+  // have is left empty; one it has and that is not of the window's size yet is first filled with "nothing there".
+  // Progress goes from 0 to 1 in each call; times and steps are added to `stats`. Throws CancelledError, and then the
+  // lattice's pixels are partly drawn.
+  virtual void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
+                    Progress& progress) const = 0;
+};
+
 // A renderer draws all five modes of a Scene. It returns the picture over a transparent background: premultiplied RGB
 // and coverage A (0 where the ray meets nothing), so that the background is laid under it in one place.
 class Renderer {
  public:
   virtual ~Renderer() = default;
   virtual std::string_view name() const = 0;
-  // Draws with the camera's width × height. Identical for any number of threads.
-  virtual Image draw(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                     const Channels& channels, Progress& progress) const = 0;
+  // Time is added to stats.setup_ms. The window lies within the picture. Throws CancelledError.
+  virtual std::unique_ptr<Frame> prepare(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                         const PixelWindow& window, RenderStats& stats, Progress& progress) const = 0;
+  // Prepares and draws the camera's width × height.
+  Image draw(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
+             const Channels& channels, Progress& progress) const;
 };
 
 // "reference", "cpu"; "auto" picks the first of cpu, reference that this build has. Throws UsageError listing the

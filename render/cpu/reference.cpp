@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "render/cpu/reference_modes.h"
+#include "render/cpu/whole_picture_frame.h"
 
 namespace atomesh {
 
@@ -53,9 +54,18 @@ class Reference final : public Renderer {
  public:
   std::string_view name() const override { return "reference"; }
 
-  Image draw(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-             const Channels& channels, Progress& progress) const override {
+  std::unique_ptr<Frame> prepare(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                 const PixelWindow& window, RenderStats&, Progress& progress) const override {
     progress.stage("reference");
+    return std::make_unique<WholePictureFrame>(
+        window, [&scene, &camera, &parameters](RenderStats& stats, const Channels& channels, Progress& following) {
+          return draw_whole(scene, camera, parameters, stats, channels, following);
+        });
+  }
+
+ private:
+  static Image draw_whole(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
+                          const Channels& channels, Progress& progress) {
     const Clock::time_point start = Clock::now();
     const View view(scene, camera, parameters);
     const Candidates candidates(view);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "render/cpu/whole_picture_frame.h"
 #include "render/renderer.h"
 #include "tests/render/fixtures.h"
 
@@ -17,8 +18,15 @@ class Painter final : public Renderer {
  public:
   explicit Painter(Vec4f (*paint)(double, double)) : paint_(paint) {}
   std::string_view name() const override { return "painter"; }
-  Image draw(const Scene&, const Camera& camera, const Parameters&, RenderStats&, const Channels& channels,
-             Progress&) const override {
+  std::unique_ptr<Frame> prepare(const Scene&, const Camera& camera, const Parameters&, const PixelWindow& window,
+                                 RenderStats&, Progress&) const override {
+    return std::make_unique<WholePictureFrame>(
+        window,
+        [this, &camera](RenderStats&, const Channels& channels, Progress&) { return picture(camera, channels); });
+  }
+
+ private:
+  Image picture(const Camera& camera, const Channels& channels) const {
     Image image(camera.width, camera.height);
     for (int row = 0; row < camera.height; ++row) {
       for (int column = 0; column < camera.width; ++column) {
@@ -30,7 +38,6 @@ class Painter final : public Renderer {
     return image;
   }
 
- private:
   Vec4f (*paint_)(double, double);
 };
 
