@@ -9,6 +9,7 @@
 #include "core/image.h"
 #include "core/parameters.h"
 #include "core/progress.h"
+#include "render/pixel_lattice.h"
 #include "render/scene.h"
 
 namespace atomesh {
@@ -17,27 +18,6 @@ struct RenderStats {
   double setup_ms = 0.0;   // acceleration structures, projection, sorting
   double render_ms = 0.0;  // the pixels
   std::uint64_t steps = 0;  // ray–primitive intersections that contributed (ray–tetrahedron steps in the volume modes)
-};
-
-// A rectangle of a picture's pixels.
-struct PixelWindow {
-  int left = 0;  // column of its first pixel in the picture
-  int top = 0;   // row
-  int width = 0;
-  int height = 0;
-};
-// All of the camera's picture.
-inline PixelWindow whole_picture(const Camera& camera) {
-  return {0, 0, camera.width, camera.height};
-}
-
-// Every so-many-th pixel of the picture: those with column ≡ column_phase (mod column_stride), and rows alike. Strides
-// are 1, 2, 4 or 8; columns and rows count from the picture's first, not the window's.
-struct PixelLattice {
-  int column_stride = 1;
-  int row_stride = 1;
-  int column_phase = 0;
-  int row_phase = 0;
 };
 
 // Optional per-pixel outputs beside the colour, row-major like the image; filled when the caller sets the pointer.

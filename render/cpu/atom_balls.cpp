@@ -18,11 +18,12 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-std::unique_ptr<BallTraversal> make_traversal(const Scene& scene, const Camera& camera, BallSearch search) {
+std::unique_ptr<BallTraversal> make_traversal(const Scene& scene, const Camera& camera, const PixelWindow& window,
+                                              BallSearch search, const Progress& progress) {
   if (search != BallSearch::hierarchy) {
     const std::size_t most =
         search == BallSearch::projection ? std::numeric_limits<std::size_t>::max() : most_projected_entries;
-    if (auto projection = project_balls(scene, camera, most)) return projection;
+    if (auto projection = project_balls(scene, camera, window, most, progress)) return projection;
   }
   return build_ball_hierarchy(scene);
 }
@@ -44,58 +45,86 @@ Vec4f shade(const Scene& scene, const std::vector<optics::LightRay>& lights, con
   return {color, 1.0F - left};
 }
 
-}  // namespace
+class AtomBallFrame final : public Frame {
+ public:
+  AtomBallFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+                std::unique_ptr<BallTraversal> traversal)
+      : scene_(scene),
+        camera_(camera),
+        window_(window),
+        lights_(optics::scene_lights(parameters, scene, camera)),
+        traversal_(std::move(traversal)) {}
 
-Image draw_atom_balls(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                      const Channels& channels, Progress& progress, BallSearch search) {
-  progress.stage("atom balls");
-  Image image(camera.width, camera.height);
-  if (channels.depth != nullptr) channels.depth->assign(image.pixels.size(), std::numeric_limits<float>::infinity());
-  if (channels.id != nullptr) channels.id->assign(image.pixels.size(), no_index);
-  stats = {};
-  if (scene.balls.empty()) return image;
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
+            Progress& progress) const override {
+    const Clock::time_point start = Clock::now();
+    size_channel(channels.depth, window_, std::numeric_limits<float>::infinity());
+    size_channel(channels.id, window_, no_index);
+    std::atomic<std::uint64_t> steps{0};
+    std::atomic<std::size_t> done{0};
+    const int tile_columns = (window_.width + BallTile::side - 1) / BallTile::side;
+    const auto tile_rows = static_cast<std::size_t>((window_.height + BallTile::side - 1) / BallTile::side);
+    parallel_for(tile_rows, 1, [&](std::size_t tile_row, std::size_t) {
+      BallTile tile(faintest);
+      std::uint64_t composed = 0;
+      for (int tile_column = 0; tile_column < tile_columns; ++tile_column) {
+        progress.check();
+        tile.aim(scene_, camera_, window_, lattice, tile_column, static_cast<int>(tile_row));
+        if (tile.grid.empty()) continue;
+        if (traversal_) traversal_->trace(tile);
+        composed += shade_tile(tile, image, channels);
+      }
+      steps += composed;
+      const std::size_t finished = ++done;
+      // The listener belongs to the thread that called us.
+      if (omp_get_thread_num() == 0) progress.update(static_cast<double>(finished) / static_cast<double>(tile_rows));
+    });
+    progress.update(1.0);
+    stats.steps += steps;
+    stats.render_ms += ms_since(start);
+  }
 
-  const Clock::time_point building = Clock::now();
-  const std::vector<optics::LightRay> lights = optics::scene_lights(parameters, scene, camera);
-  const std::unique_ptr<BallTraversal> traversal = make_traversal(scene, camera, search);
-  stats.setup_ms = ms_since(building);
-
-  const Clock::time_point drawing = Clock::now();
-  std::atomic<std::uint64_t> steps{0};
-  const int tile_columns = (camera.width + BallTile::side - 1) / BallTile::side;
-  const int tile_rows = (camera.height + BallTile::side - 1) / BallTile::side;
-  parallel_for(static_cast<std::size_t>(tile_rows), 1, [&](std::size_t begin, std::size_t end) {
-    progress.check();
-    BallTile tile(faintest);
+ private:
+  // Returns the number of balls composed.
+  std::uint64_t shade_tile(const BallTile& tile, Image& image, const Channels& channels) const {
     std::uint64_t composed = 0;
-    for (std::size_t t = begin * static_cast<std::size_t>(tile_columns);
-         t < end * static_cast<std::size_t>(tile_columns); ++t) {
-      tile.aim(scene, camera, static_cast<int>(t) % tile_columns, static_cast<int>(t) / tile_columns);
-      traversal->trace(tile);
-      for (int row = 0; row < tile.rows; ++row) {
-        for (int column = 0; column < tile.columns; ++column) {
-          const auto in_tile = static_cast<std::size_t>(row * BallTile::side + column);
-          const std::vector<BallHits::Hit>& hits = tile.hits[in_tile].hits();
-          if (hits.empty()) continue;
-          const optics::BallRay& ray = tile.rays[in_tile];
-          const auto pixel = static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(camera.width) +
-                             static_cast<std::size_t>(tile.left + column);
-          image.pixels[pixel] = shade(scene, lights, ray, hits);
-          composed += hits.size();
-          if (channels.depth != nullptr) {
-            (*channels.depth)[pixel] =
-                static_cast<float>(hits.front().length * glm::dot(ray.direction, camera.forward));
-          }
-          if (channels.id != nullptr) (*channels.id)[pixel] = scene.balls[hits.front().ball].atom;
+    for (int j = 0; j < tile.grid.rows(); ++j) {
+      for (int i = 0; i < tile.grid.columns(); ++i) {
+        const std::vector<BallHits::Hit>& hits = tile.hits[BallTile::place(i, j)].hits();
+        const optics::BallRay& ray = tile.rays[BallTile::place(i, j)];
+        const std::size_t pixel = window_.place(tile.grid.column(i), tile.grid.row(j));
+        const bool any = !hits.empty();
+        image.pixels[pixel] = any ? shade(scene_, lights_, ray, hits) : Vec4f(0.0F);
+        composed += hits.size();
+        if (channels.depth != nullptr) {
+          (*channels.depth)[pixel] =
+              any ? static_cast<float>(hits.front().length * glm::dot(ray.direction, camera_.forward))
+                  : std::numeric_limits<float>::infinity();
         }
+        if (channels.id != nullptr) (*channels.id)[pixel] = any ? scene_.balls[hits.front().ball].atom : no_index;
       }
     }
-    steps += composed;
-  });
-  stats.render_ms = ms_since(drawing);
-  stats.steps = steps;
-  progress.update(1.0);
-  return image;
+    return composed;
+  }
+
+  const Scene& scene_;
+  const Camera& camera_;
+  PixelWindow window_;
+  std::vector<optics::LightRay> lights_;
+  std::unique_ptr<BallTraversal> traversal_;  // null where there is no ball
+};
+
+}  // namespace
+
+std::unique_ptr<Frame> prepare_atom_balls(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                          const PixelWindow& window, RenderStats& stats, const Progress& progress,
+                                          BallSearch search) {
+  const Clock::time_point start = Clock::now();
+  std::unique_ptr<BallTraversal> traversal;
+  if (!scene.balls.empty()) traversal = make_traversal(scene, camera, window, search, progress);
+  auto frame = std::make_unique<AtomBallFrame>(scene, camera, parameters, window, std::move(traversal));
+  stats.setup_ms += ms_since(start);
+  return frame;
 }
 
 }  // namespace atomesh

@@ -1,6 +1,8 @@
 // Mode atoms on the CPU.
 #pragma once
 
+#include <memory>
+
 #include "render/renderer.h"
 
 namespace atomesh {
@@ -13,9 +15,10 @@ enum class BallSearch { automatic, projection, hierarchy };
 // `most_projected_entries`.
 //
 // RenderStats: setup_ms is the search's preparation, steps the number of balls composed. Channels: depth, id
-// (Ball::atom). Throws UnavailableError when Embree cannot start or runs out of memory.
-Image draw_atom_balls(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                      const Channels& channels, Progress& progress, BallSearch search = BallSearch::automatic);
+// (Ball::atom). Throws UnavailableError when Embree cannot start or runs out of memory, CancelledError.
+std::unique_ptr<Frame> prepare_atom_balls(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                          const PixelWindow& window, RenderStats& stats, const Progress& progress,
+                                          BallSearch search = BallSearch::automatic);
 
 inline constexpr double faintest = 1e-3;
 inline constexpr std::size_t most_projected_entries = std::size_t{1} << 24U;

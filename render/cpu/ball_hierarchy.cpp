@@ -105,8 +105,8 @@ class Hierarchy final : public BallTraversal {
   }
 
   void trace(BallTile& tile) const override {
-    for (int top = 0; top < tile.rows; top += side) {
-      for (int left = 0; left < tile.columns; left += side) trace_packet(tile, left, top);
+    for (int top = 0; top < tile.grid.rows(); top += side) {
+      for (int left = 0; left < tile.grid.columns(); left += side) trace_packet(tile, left, top);
     }
   }
 
@@ -121,10 +121,10 @@ class Hierarchy final : public BallTraversal {
     alignas(64) RTCRayHit16 query{};
     alignas(64) std::array<int, lanes> valid{};
     for (unsigned lane = 0; lane < lanes; ++lane) {
-      const int column = left + static_cast<int>(lane % side);
-      const int row = top + static_cast<int>(lane / side);
-      if (column >= tile.columns || row >= tile.rows) continue;
-      const auto pixel = static_cast<std::size_t>(row * BallTile::side + column);
+      const int i = left + static_cast<int>(lane % side);
+      const int j = top + static_cast<int>(lane / side);
+      if (i >= tile.grid.columns() || j >= tile.grid.rows()) continue;
+      const std::size_t pixel = BallTile::place(i, j);
       const optics::BallRay& ray = tile.rays[pixel];
       // Where the ray comes near the balls. Starting there instead of at the eye keeps the coordinates small, which
       // Embree's float needs.

@@ -10,7 +10,7 @@ namespace atomesh {
 
 namespace {
 
-// Pixels whose rays may meet a ball, inclusive; and how near it can be met, rounded down.
+// Pixels of the window whose rays may meet a ball, inclusive; and how near it can be met, rounded down.
 struct Outline {
   int left = 0;
   int right = -1;
@@ -31,7 +31,8 @@ std::array<double, 2> tangent_slopes(double x, double z, double r) {
 
 class Projector {
  public:
-  Projector(const Scene& scene, const Camera& camera) : camera_(camera), eye_(camera.eye - scene.center) {}
+  Projector(const Scene& scene, const Camera& camera, const PixelWindow& window)
+      : camera_(camera), window_(window), eye_(camera.eye - scene.center) {}
 
   Outline outline_of(const Ball& ball) const {
     const Vec3 p = Vec3(ball.center) - eye_;
@@ -48,7 +49,8 @@ class Projector {
       set_columns(outline, x - r, x + r);
       set_rows(outline, y - r, y + r);
     } else if (z - r <= 1e-6 * r) {
-      outline = {0, camera_.width - 1, 0, camera_.height - 1, outline.nearest};
+      outline = {window_.left, window_.left + window_.width - 1, window_.top, window_.top + window_.height - 1,
+                 outline.nearest};
     } else {
       const auto across = tangent_slopes(x, z, r);
       const auto upward = tangent_slopes(y, z, r);
@@ -63,22 +65,25 @@ class Projector {
     if (length <= 0.0) return 0.0F;
     return std::max(0.0F, static_cast<float>(length * (1.0 - 1e-6)));
   }
-  static int clamped(double pixel, int size) { return static_cast<int>(std::clamp(pixel, -1.0, size + 0.0)); }
+  static int clamped(double pixel, int first, int size) {
+    return static_cast<int>(std::clamp(pixel, first - 1.0, first + size + 0.0));
+  }
   // The first and last pixel whose centre lies between the two, one thousandth of a pixel generously.
   void set_columns(Outline& outline, double low, double high) const {
     const double shift = 0.5 * camera_.width - 0.5;
-    outline.left = std::max(0, clamped(std::ceil(low / camera_.pixel + shift - 1e-3), camera_.width));
-    outline.right =
-        std::min(camera_.width - 1, clamped(std::floor(high / camera_.pixel + shift + 1e-3), camera_.width));
+    const auto column = [this](double at) { return clamped(at, window_.left, window_.width); };
+    outline.left = std::max(window_.left, column(std::ceil(low / camera_.pixel + shift - 1e-3)));
+    outline.right = std::min(window_.left + window_.width - 1, column(std::floor(high / camera_.pixel + shift + 1e-3)));
   }
   void set_rows(Outline& outline, double low, double high) const {
     const double shift = 0.5 * camera_.height - 0.5;
-    outline.top = std::max(0, clamped(std::ceil(shift - high / camera_.pixel - 1e-3), camera_.height));
-    outline.bottom =
-        std::min(camera_.height - 1, clamped(std::floor(shift - low / camera_.pixel + 1e-3), camera_.height));
+    const auto row = [this](double at) { return clamped(at, window_.top, window_.height); };
+    outline.top = std::max(window_.top, row(std::ceil(shift - high / camera_.pixel - 1e-3)));
+    outline.bottom = std::min(window_.top + window_.height - 1, row(std::floor(shift - low / camera_.pixel + 1e-3)));
   }
 
   const Camera& camera_;
+  PixelWindow window_;
   Vec3 eye_;
 };
 
@@ -97,22 +102,24 @@ double nearest_of(Entry entry) {
 
 class ProjectedBalls final : public BallTraversal {
  public:
-  ProjectedBalls(const Scene& scene, const Camera& camera)
+  ProjectedBalls(const Scene& scene, const PixelWindow& window)
       : scene_(scene),
-        tile_columns_((camera.width + BallTile::side - 1) / BallTile::side),
+        window_(window),
+        tile_columns_((window.width + BallTile::side - 1) / BallTile::side),
         tiles_(static_cast<std::size_t>(tile_columns_) *
-               static_cast<std::size_t>((camera.height + BallTile::side - 1) / BallTile::side)) {}
+               static_cast<std::size_t>((window.height + BallTile::side - 1) / BallTile::side)) {}
 
-  bool enter_balls(const Camera& camera, std::size_t most_entries) {
+  bool enter_balls(const Camera& camera, std::size_t most_entries, const Progress& progress) {
     const std::size_t count = scene_.balls.size();
     outlines_.resize(count);
     // Ranges of balls count and then enter by themselves; a tile's list is made of theirs in order.
     const std::size_t ranges = std::clamp<std::size_t>(count / 4096, 1, 64);
     const auto first_of = [count, ranges](std::size_t range) { return count * range / ranges; };
     std::vector<std::size_t> next(ranges * tiles_, 0);
-    const Projector projector(scene_, camera);
+    const Projector projector(scene_, camera, window_);
     parallel_for(ranges, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t range = begin; range < end; ++range) {
+        progress.check();
         for (std::size_t i = first_of(range); i < first_of(range + 1); ++i) {
           outlines_[i] = projector.outline_of(scene_.balls[i]);
           for_each_tile(outlines_[i], [&](std::size_t tile) { ++next[range * tiles_ + tile]; });
@@ -134,6 +141,7 @@ class ProjectedBalls final : public BallTraversal {
     entries_.resize(total);
     parallel_for(ranges, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t range = begin; range < end; ++range) {
+        progress.check();
         for (std::size_t i = first_of(range); i < first_of(range + 1); ++i) {
           const Entry entry = entry_of(outlines_[i].nearest, i);
           for_each_tile(outlines_[i], [&](std::size_t tile) { entries_[next[range * tiles_ + tile]++] = entry; });
@@ -144,10 +152,13 @@ class ProjectedBalls final : public BallTraversal {
   }
 
   void trace(BallTile& tile) const override {
-    const auto index = static_cast<std::size_t>(tile.top / BallTile::side) * static_cast<std::size_t>(tile_columns_) +
-                       static_cast<std::size_t>(tile.left / BallTile::side);
-    std::vector<Entry> nearest_last(entries_.begin() + static_cast<std::ptrdiff_t>(begin_[index]),
-                                    entries_.begin() + static_cast<std::ptrdiff_t>(begin_[index + 1]));
+    const auto index = static_cast<std::size_t>(tile.row) * static_cast<std::size_t>(tile_columns_) +
+                       static_cast<std::size_t>(tile.column);
+    std::vector<Entry> nearest_last;
+    nearest_last.reserve(begin_[index + 1] - begin_[index]);
+    for (std::size_t at = begin_[index]; at < begin_[index + 1]; ++at) {
+      if (!pixels_under(outlines_[ball_of(entries_[at])], tile).empty()) nearest_last.push_back(entries_[at]);
+    }
     // Most entries are never looked at, so they are put in order only as far as the tile sees.
     std::make_heap(nearest_last.begin(), nearest_last.end(), std::greater<>());
     double reach = std::numeric_limits<double>::infinity();
@@ -165,25 +176,36 @@ class ProjectedBalls final : public BallTraversal {
   template <class Visit>
   void for_each_tile(const Outline& outline, Visit visit) const {
     if (outline.empty()) return;
-    for (int row = outline.top / BallTile::side; row <= outline.bottom / BallTile::side; ++row) {
-      for (int column = outline.left / BallTile::side; column <= outline.right / BallTile::side; ++column) {
+    const int last_row = (outline.bottom - window_.top) / BallTile::side;
+    const int last_column = (outline.right - window_.left) / BallTile::side;
+    for (int row = (outline.top - window_.top) / BallTile::side; row <= last_row; ++row) {
+      for (int column = (outline.left - window_.left) / BallTile::side; column <= last_column; ++column) {
         visit(static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns_) +
               static_cast<std::size_t>(column));
       }
     }
   }
 
+  // Of the tile's grid, ends included.
+  struct GridBox {
+    int first_i, last_i, first_j, last_j;
+    bool empty() const { return first_i > last_i || first_j > last_j; }
+  };
+  static GridBox pixels_under(const Outline& outline, const BallTile& tile) {
+    const LatticeGrid& grid = tile.grid;
+    return {grid.first_i(outline.left), grid.last_i(outline.right), grid.first_j(outline.top),
+            grid.last_j(outline.bottom)};
+  }
+
   void meet(BallTile& tile, Index index) const {
     const Ball& ball = scene_.balls[index];
-    const Outline& outline = outlines_[index];
-    const int right = std::min(outline.right, tile.left + tile.columns - 1);
-    const int bottom = std::min(outline.bottom, tile.top + tile.rows - 1);
-    for (int row = std::max(outline.top, tile.top); row <= bottom; ++row) {
-      for (int column = std::max(outline.left, tile.left); column <= right; ++column) {
-        const auto pixel = static_cast<std::size_t>((row - tile.top) * BallTile::side + column - tile.left);
-        const double length = optics::length_to_ball(tile.rays[pixel], ball);
-        if (length <= tile.hits[pixel].reach() && std::isfinite(length)) {
-          tile.hits[pixel].add(length, index, static_cast<double>(ball.color.a));
+    const GridBox box = pixels_under(outlines_[index], tile);
+    for (int j = box.first_j; j <= box.last_j; ++j) {
+      for (int i = box.first_i; i <= box.last_i; ++i) {
+        const std::size_t at = BallTile::place(i, j);
+        const double length = optics::length_to_ball(tile.rays[at], ball);
+        if (length <= tile.hits[at].reach() && std::isfinite(length)) {
+          tile.hits[at].add(length, index, static_cast<double>(ball.color.a));
         }
       }
     }
@@ -191,15 +213,16 @@ class ProjectedBalls final : public BallTraversal {
 
   static double furthest_reach(const BallTile& tile) {
     double furthest = 0.0;
-    for (int row = 0; row < tile.rows; ++row) {
-      for (int column = 0; column < tile.columns; ++column) {
-        furthest = std::max(furthest, tile.hits[static_cast<std::size_t>(row * BallTile::side + column)].reach());
+    for (int j = 0; j < tile.grid.rows(); ++j) {
+      for (int i = 0; i < tile.grid.columns(); ++i) {
+        furthest = std::max(furthest, tile.hits[BallTile::place(i, j)].reach());
       }
     }
     return furthest;
   }
 
   const Scene& scene_;
+  PixelWindow window_;
   int tile_columns_;
   std::size_t tiles_;
   std::vector<Outline> outlines_;
@@ -209,23 +232,26 @@ class ProjectedBalls final : public BallTraversal {
 
 }  // namespace
 
-void BallTile::aim(const Scene& scene, const Camera& camera, int tile_column, int tile_row) {
-  left = tile_column * side;
-  top = tile_row * side;
-  columns = std::min(side, camera.width - left);
-  rows = std::min(side, camera.height - top);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const auto pixel = static_cast<std::size_t>(row * side + column);
-      rays[pixel] = optics::ball_ray(scene, camera, left + column, top + row);
-      hits[pixel].clear();
+void BallTile::aim(const Scene& scene, const Camera& camera, const PixelWindow& window, const PixelLattice& lattice,
+                   int tile_column, int tile_row) {
+  column = tile_column;
+  row = tile_row;
+  const int left = window.left + tile_column * side;
+  const int top = window.top + tile_row * side;
+  grid = LatticeGrid(lattice, left, std::min(left + side, window.left + window.width), top,
+                     std::min(top + side, window.top + window.height));
+  for (int j = 0; j < grid.rows(); ++j) {
+    for (int i = 0; i < grid.columns(); ++i) {
+      rays[place(i, j)] = optics::ball_ray(scene, camera, grid.column(i), grid.row(j));
+      hits[place(i, j)].clear();
     }
   }
 }
 
-std::unique_ptr<BallTraversal> project_balls(const Scene& scene, const Camera& camera, std::size_t most_entries) {
-  auto projection = std::make_unique<ProjectedBalls>(scene, camera);
-  if (!projection->enter_balls(camera, most_entries)) return nullptr;
+std::unique_ptr<BallTraversal> project_balls(const Scene& scene, const Camera& camera, const PixelWindow& window,
+                                             std::size_t most_entries, const Progress& progress) {
+  auto projection = std::make_unique<ProjectedBalls>(scene, window);
+  if (!projection->enter_balls(camera, most_entries, progress)) return nullptr;
   return projection;
 }
 

@@ -5,28 +5,33 @@
 #include <memory>
 #include <vector>
 
+#include "core/progress.h"
 #include "render/cpu/ball_hits.h"
+#include "render/pixel_lattice.h"
 #include "render/scene.h"
 #include "render/shared/ball_ray.h"
 
 namespace atomesh {
 
-// A square of pixels, cut off at the picture's right and lower edge.
+// The rays of a lattice's pixels in a square of the window, cut off at the window's right and lower edge. Squares are
+// counted from the window's corner.
 struct BallTile {
-  static constexpr int side = 16;
+  static constexpr int side = 16;  // pixels of the picture
 
-  int left = 0;
-  int top = 0;
-  int columns = 0;
-  int rows = 0;
-  std::vector<optics::BallRay> rays;  // side × side, row-major from the top left
+  int column = 0;  // of the square among the window's
+  int row = 0;
+  LatticeGrid grid;                   // its pixels
+  std::vector<optics::BallRay> rays;  // of pixel (i, j) of the grid at side · j + i
   std::vector<BallHits> hits;
 
   explicit BallTile(double least_light)
-      : rays(static_cast<std::size_t>(side * side)),
+      : grid(PixelLattice{}, 0, 0, 0, 0),
+        rays(static_cast<std::size_t>(side * side)),
         hits(static_cast<std::size_t>(side * side), BallHits(least_light)) {}
+  static std::size_t place(int i, int j) { return static_cast<std::size_t>(side * j + i); }
   // Moves the tile: rays of the camera, no hits.
-  void aim(const Scene& scene, const Camera& camera, int tile_column, int tile_row);
+  void aim(const Scene& scene, const Camera& camera, const PixelWindow& window, const PixelLattice& lattice,
+           int tile_column, int tile_row);
 };
 
 class BallTraversal {
@@ -38,8 +43,10 @@ class BallTraversal {
 
 // Balls sorted into the tiles their outlines cover, nearest first; a tile is done when no ray of it sees further.
 // Costs a few passes over the balls and nothing to build. Null where balls would have to be entered in more than
-// `most_entries` tiles altogether: so large, and so many in front of one another, that most of that is waste.
-std::unique_ptr<BallTraversal> project_balls(const Scene& scene, const Camera& camera, std::size_t most_entries);
+// `most_entries` tiles altogether: so large, and so many in front of one another, that most of that is waste. Only what
+// may be seen in the window is entered. Throws CancelledError.
+std::unique_ptr<BallTraversal> project_balls(const Scene& scene, const Camera& camera, const PixelWindow& window,
+                                             std::size_t most_entries, const Progress& progress);
 
 // A bounding-volume hierarchy of spheres (Embree). Throws UnavailableError when Embree cannot start or runs out of
 // memory.

@@ -14,22 +14,22 @@ class CpuRenderer final : public Renderer {
   std::string_view name() const override { return "cpu"; }
 
   std::unique_ptr<Frame> prepare(const Scene& scene, const Camera& camera, const Parameters& parameters,
-                                 const PixelWindow& window, RenderStats&, Progress& progress) const override {
+                                 const PixelWindow& window, RenderStats& stats, Progress& progress) const override {
     progress.stage("render");
+    switch (scene.mode) {
+      case Mode::surface:
+        return prepare_surface(scene, camera, parameters, window, stats, progress);
+      case Mode::xray:
+        return prepare_xray(scene, camera, parameters, window, stats, progress);
+      case Mode::atoms:
+        return prepare_atom_balls(scene, camera, parameters, window, stats, progress);
+      case Mode::volume_surface:
+      case Mode::volume:
+        break;
+    }
     return std::make_unique<WholePictureFrame>(
-        window, [&scene, &camera, &parameters](RenderStats& stats, const Channels& channels, Progress& following) {
-          switch (scene.mode) {
-            case Mode::volume_surface:
-            case Mode::volume:
-              return draw_cell_projection(scene, camera, parameters, stats, following);
-            case Mode::surface:
-              return draw_surface(scene, camera, parameters, stats, channels, following);
-            case Mode::xray:
-              return draw_xray(scene, camera, parameters, stats, channels, following);
-            case Mode::atoms:
-              break;
-          }
-          return draw_atom_balls(scene, camera, parameters, stats, channels, following);
+        window, [&scene, &camera, &parameters](RenderStats& drawn, const Channels&, Progress& following) {
+          return draw_cell_projection(scene, camera, parameters, drawn, following);
         });
   }
 };

@@ -5,7 +5,6 @@
 
 #include "core/parallel.h"
 #include "render/cpu/reference_modes.h"
-#include "render/cpu/whole_picture_frame.h"
 
 namespace atomesh {
 
@@ -18,18 +17,18 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// The scene's primitives over the picture; lists the mode has no use for are empty.
+// The scene's primitives over the window; lists the mode has no use for are empty.
 struct Candidates {
   Bins cells;
   Bins triangles;
   Bins balls;
 
-  explicit Candidates(const View& view)
-      : cells(view.sight.camera(), view.scene.tetrahedra.size(),
+  Candidates(const View& view, const PixelWindow& window, const Progress& progress)
+      : cells(window, view.scene.tetrahedra.size(), progress,
               [&view](std::size_t i) { return view.sight.extent_of_vertices(view.scene.tetrahedra[i].data(), 4); }),
-        triangles(view.sight.camera(), view.scene.surface.size(),
+        triangles(window, view.scene.surface.size(), progress,
                   [&view](std::size_t i) { return view.sight.extent_of_vertices(view.scene.surface[i].data(), 3); }),
-        balls(view.sight.camera(), view.scene.balls.size(),
+        balls(window, view.scene.balls.size(), progress,
               [&view](std::size_t i) { return view.sight.extent_of_ball(view.scene.balls[i]); }) {}
 };
 
@@ -50,54 +49,69 @@ Seen see(const View& view, const Candidates& candidates, int column, int row) {
   return {};
 }
 
+class ReferenceFrame final : public Frame {
+ public:
+  ReferenceFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+                 const Progress& progress)
+      : window_(window), view_(scene, camera, parameters), candidates_(view_, window, progress) {}
+
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
+            Progress& progress) const override {
+    const Clock::time_point start = Clock::now();
+    const Mode mode = view_.scene.mode;
+    const bool hits = mode == Mode::surface || mode == Mode::atoms;
+    std::vector<float>* thickness = mode == Mode::xray ? channels.thickness : nullptr;
+    std::vector<float>* depth = hits ? channels.depth : nullptr;
+    std::vector<Index>* id = hits ? channels.id : nullptr;
+    size_channel(thickness, window_, 0.0F);
+    size_channel(depth, window_, std::numeric_limits<float>::infinity());
+    size_channel(id, window_, no_index);
+    const LatticeGrid grid(lattice, window_);
+    std::atomic<std::uint64_t> steps{0};
+    std::atomic<std::size_t> done{0};
+    constexpr std::size_t together = 32;  // rays between two looks at whether to go on
+    parallel_for(grid.pixels(), together, [&](std::size_t begin, std::size_t end) {
+      progress.check();
+      std::uint64_t range_steps = 0;
+      for (std::size_t n = begin; n < end; ++n) {
+        const int column = grid.column(static_cast<int>(n % static_cast<std::size_t>(grid.columns())));
+        const int row = grid.row(static_cast<int>(n / static_cast<std::size_t>(grid.columns())));
+        const Seen seen = see(view_, candidates_, column, row);
+        const std::size_t pixel = window_.place(column, row);
+        image.pixels[pixel] = Vec4f(glm::dvec4(seen.light.color, 1.0 - seen.light.transmittance));
+        if (thickness != nullptr) (*thickness)[pixel] = static_cast<float>(seen.thickness);
+        if (depth != nullptr) (*depth)[pixel] = static_cast<float>(seen.depth);
+        if (id != nullptr) (*id)[pixel] = seen.id;
+        range_steps += seen.steps;
+      }
+      steps += range_steps;
+      const std::size_t finished = done += end - begin;
+      // The listener belongs to the thread that called us.
+      if (omp_get_thread_num() == 0)
+        progress.update(static_cast<double>(finished) / static_cast<double>(grid.pixels()));
+    });
+    progress.update(1.0);
+    stats.steps += steps;
+    stats.render_ms += ms_since(start);
+  }
+
+ private:
+  PixelWindow window_;
+  View view_;
+  Candidates candidates_;
+};
+
 class Reference final : public Renderer {
  public:
   std::string_view name() const override { return "reference"; }
 
   std::unique_ptr<Frame> prepare(const Scene& scene, const Camera& camera, const Parameters& parameters,
-                                 const PixelWindow& window, RenderStats&, Progress& progress) const override {
+                                 const PixelWindow& window, RenderStats& stats, Progress& progress) const override {
     progress.stage("reference");
-    return std::make_unique<WholePictureFrame>(
-        window, [&scene, &camera, &parameters](RenderStats& stats, const Channels& channels, Progress& following) {
-          return draw_whole(scene, camera, parameters, stats, channels, following);
-        });
-  }
-
- private:
-  static Image draw_whole(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                          const Channels& channels, Progress& progress) {
     const Clock::time_point start = Clock::now();
-    const View view(scene, camera, parameters);
-    const Candidates candidates(view);
-    stats.setup_ms = ms_since(start);
-
-    const Clock::time_point drawing = Clock::now();
-    Image image(camera.width, camera.height);
-    const bool hits = scene.mode == Mode::surface || scene.mode == Mode::atoms;
-    if (channels.thickness != nullptr && scene.mode == Mode::xray) channels.thickness->resize(image.pixels.size());
-    if (channels.depth != nullptr && hits) channels.depth->resize(image.pixels.size());
-    if (channels.id != nullptr && hits) channels.id->resize(image.pixels.size());
-    std::atomic<std::uint64_t> steps{0};
-    parallel_for(image.pixels.size(), 512, [&](std::size_t begin, std::size_t end) {
-      progress.check();
-      std::uint64_t range_steps = 0;
-      for (std::size_t pixel = begin; pixel < end; ++pixel) {
-        const auto width = static_cast<std::size_t>(camera.width);
-        const Seen seen = see(view, candidates, static_cast<int>(pixel % width), static_cast<int>(pixel / width));
-        image.pixels[pixel] = Vec4f(Vec4(seen.light.color, 1.0 - seen.light.transmittance));
-        if (channels.thickness != nullptr && scene.mode == Mode::xray) {
-          (*channels.thickness)[pixel] = static_cast<float>(seen.thickness);
-        }
-        if (channels.depth != nullptr && hits) (*channels.depth)[pixel] = static_cast<float>(seen.depth);
-        if (channels.id != nullptr && hits) (*channels.id)[pixel] = seen.id;
-        range_steps += seen.steps;
-      }
-      steps += range_steps;
-    });
-    stats.render_ms = ms_since(drawing);
-    stats.steps = steps;
-    progress.update(1.0);
-    return image;
+    auto frame = std::make_unique<ReferenceFrame>(scene, camera, parameters, window, progress);
+    stats.setup_ms += ms_since(start);
+    return frame;
   }
 };
 

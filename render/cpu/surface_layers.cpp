@@ -73,7 +73,7 @@ SurfaceLayers::SurfaceLayers(const Scene& scene, const Camera& camera, const Par
 void SurfaceLayers::find(std::size_t tile, TileLayers& layers) const {
   layers.clear();
   const PixelBox pixels = bins_.pixels_of(tile, camera_.width, camera_.height);
-  cross_triangles(scene_.surface, camera_, vertices_, bins_.of(tile), pixels,
+  cross_triangles(scene_.surface, camera_, vertices_, bins_.of(tile), pixels, PixelLattice{},
                   [&](int column, int row, Index triangle, const TriangleRaster& raster, const Crossing& crossing) {
                     if (!crossing.entering) return;
                     const double beside =

@@ -18,126 +18,176 @@ namespace {
 constexpr int tile_side = 32;
 constexpr std::size_t tile_pixels = std::size_t{tile_side} * tile_side;
 
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-std::size_t in_tile(const PixelBox& tile, int column, int row) {
-  return static_cast<std::size_t>((row - tile.first_row) * tile_side + (column - tile.first_column));
-}
+// The surface projected and sorted into tiles, which are counted from the window's corner: no pixel's value depends on
+// the tile it is in.
+class BinnedSurface {
+ public:
+  BinnedSurface(const Scene& scene, const Camera& camera, const PixelWindow& window, RenderStats& stats,
+                const Progress& progress)
+      : scene_(scene), camera_(camera), window_(window) {
+    const Clock::time_point start = Clock::now();
+    vertices_ = project_vertices(scene.vertices, scene.center, camera);
+    const auto box = [&](std::size_t t) {
+      const PixelBox whole = pixel_box(vertices_, scene.surface[t], camera.width, camera.height);
+      return PixelBox{
+          std::max(whole.first_column - window.left, 0), std::min(whole.last_column - window.left, window.width - 1),
+          std::max(whole.first_row - window.top, 0), std::min(whole.last_row - window.top, window.height - 1)};
+    };
+    bins_ = bin_to_tiles(scene.surface.size(), window.width, window.height, tile_side, box, progress);
+    stats.setup_ms += ms_since(start);
+  }
 
-// Calls cross(pixel of the tile, triangle, crossing) for every crossing in the tile, triangles ascending.
-template <class Cross>
-void raster_tile(const Scene& scene, const Camera& camera, const ProjectedVertices& vertices,
-                 std::span<const Index> triangles, const PixelBox& tile, Cross&& cross) {
-  cross_triangles(scene.surface, camera, vertices, triangles, tile,
-                  [&](int column, int row, Index triangle, const TriangleRaster&, const Crossing& crossing) {
-                    cross(in_tile(tile, column, row), triangle, crossing);
-                  });
-}
+  const Scene& scene() const { return scene_; }
+  const Camera& camera() const { return camera_; }
+  const PixelWindow& window() const { return window_; }
 
-// Bins the surface and calls draw(tile, its triangles) for every tile, in parallel. draw() returns its crossings.
-template <class Draw>
-void for_tiles(const Scene& scene, const Camera& camera, RenderStats& stats, Progress& progress, Draw&& draw) {
-  const auto start = std::chrono::steady_clock::now();
-  const ProjectedVertices vertices = project_vertices(scene.vertices, scene.center, camera);
-  const auto box = [&](std::size_t t) { return pixel_box(vertices, scene.surface[t], camera.width, camera.height); };
-  const TileBins bins = bin_to_tiles(scene.surface.size(), camera.width, camera.height, tile_side, box, progress);
-  stats.setup_ms += ms_since(start);
-  const auto drawn = std::chrono::steady_clock::now();
-  std::atomic<std::uint64_t> steps{0};
-  std::atomic<std::size_t> done{0};
-  parallel_for(bins.tiles(), 1, [&](std::size_t t, std::size_t) {
-    progress.check();
-    const PixelBox tile = bins.pixels_of(t, camera.width, camera.height);
-    if (!bins.of(t).empty()) steps += draw(vertices, tile, bins.of(t));
-    const std::size_t finished = ++done;
-    // The listener belongs to the thread that called us.
-    if (omp_get_thread_num() == 0) progress.update(static_cast<double>(finished) / static_cast<double>(bins.tiles()));
-  });
-  progress.update(1.0);
-  stats.steps += steps;
-  stats.render_ms += ms_since(drawn);
-}
+  // For every tile, in parallel: draw(grid of the lattice's pixels in it, cross_all), where cross_all(cross) calls
+  // cross(place, triangle, crossing) for every crossing, triangles ascending; pixel (i, j) of the grid has place
+  // tile_side · j + i. Adds the crossings to stats.steps.
+  template <class Draw>
+  void for_tiles(const PixelLattice& lattice, RenderStats& stats, Progress& progress, Draw&& draw) const {
+    const Clock::time_point start = Clock::now();
+    std::atomic<std::uint64_t> steps{0};
+    std::atomic<std::size_t> done{0};
+    parallel_for(bins_.tiles(), 1, [&](std::size_t t, std::size_t) {
+      progress.check();
+      PixelBox pixels = bins_.pixels_of(t, window_.width, window_.height);
+      pixels = {pixels.first_column + window_.left, pixels.last_column + window_.left, pixels.first_row + window_.top,
+                pixels.last_row + window_.top};
+      const LatticeGrid grid(lattice, pixels.first_column, pixels.last_column + 1, pixels.first_row,
+                             pixels.last_row + 1);
+      if (!grid.empty()) {
+        std::uint64_t crossings = 0;
+        draw(grid, [&](auto&& cross) {
+          cross_triangles(scene_.surface, camera_, vertices_, bins_.of(t), pixels, lattice,
+                          [&](int column, int row, Index triangle, const TriangleRaster&, const Crossing& crossing) {
+                            ++crossings;
+                            cross(static_cast<std::size_t>(grid.j_of(row) * tile_side + grid.i_of(column)), triangle,
+                                  crossing);
+                          });
+        });
+        steps += crossings;
+      }
+      const std::size_t finished = ++done;
+      // The listener belongs to the thread that called us.
+      if (omp_get_thread_num() == 0)
+        progress.update(static_cast<double>(finished) / static_cast<double>(bins_.tiles()));
+    });
+    progress.update(1.0);
+    stats.steps += steps;
+    stats.render_ms += ms_since(start);
+  }
 
-std::size_t pixel_index(const Camera& camera, int column, int row) {
-  return static_cast<std::size_t>(row) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(column);
-}
+ private:
+  const Scene& scene_;
+  const Camera& camera_;
+  PixelWindow window_;
+  ProjectedVertices vertices_;
+  TileBins bins_;
+};
 
+// Calls visit(column, row, place) for the pixels of a tile's grid.
 template <class Visit>
-void for_pixels(const PixelBox& tile, Visit&& visit) {
-  for (int row = tile.first_row; row <= tile.last_row; ++row) {
-    for (int column = tile.first_column; column <= tile.last_column; ++column) {
-      visit(column, row, in_tile(tile, column, row));
+void for_pixels(const LatticeGrid& grid, Visit&& visit) {
+  for (int j = 0; j < grid.rows(); ++j) {
+    for (int i = 0; i < grid.columns(); ++i) {
+      visit(grid.column(i), grid.row(j), static_cast<std::size_t>(j * tile_side + i));
     }
   }
 }
 
+class SurfaceFrame final : public Frame {
+ public:
+  SurfaceFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+               RenderStats& stats, const Progress& progress)
+      : surface_(scene, camera, window, stats, progress), shader_(scene, camera, parameters) {}
+
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
+            Progress& progress) const override {
+    struct Hit {
+      double depth;
+      Index triangle;
+      bool entering;
+    };
+    constexpr Hit none{std::numeric_limits<double>::infinity(), no_index, true};
+    const PixelWindow& window = surface_.window();
+    const Camera& camera = surface_.camera();
+    size_channel(channels.depth, window, std::numeric_limits<float>::infinity());
+    size_channel(channels.id, window, no_index);
+    surface_.for_tiles(lattice, stats, progress, [&](const LatticeGrid& grid, auto&& cross_all) {
+      std::array<Hit, tile_pixels> nearest;
+      std::fill_n(nearest.begin(), grid.rows() * tile_side, none);
+      cross_all([&](std::size_t at, Index triangle, const Crossing& crossing) {
+        if (crossing.depth < nearest[at].depth) nearest[at] = {crossing.depth, triangle, crossing.entering};
+      });
+      for_pixels(grid, [&](int column, int row, std::size_t at) {
+        const Hit& hit = nearest[at];
+        const std::size_t pixel = window.place(column, row);
+        image.pixels[pixel] =
+            hit.triangle == no_index
+                ? Vec4f(0.0F)
+                : Vec4f(shader_.shade(hit.triangle, camera.x_of(column), camera.y_of(row), hit.depth, !hit.entering),
+                        1.0F);
+        if (channels.depth != nullptr) (*channels.depth)[pixel] = static_cast<float>(hit.depth);
+        if (channels.id != nullptr) (*channels.id)[pixel] = hit.triangle;
+      });
+    });
+  }
+
+ private:
+  BinnedSurface surface_;
+  SurfaceShader shader_;
+};
+
+class XrayFrame final : public Frame {
+ public:
+  XrayFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+            RenderStats& stats, const Progress& progress)
+      : surface_(scene, camera, window, stats, progress), xray_(parameters.xray) {}
+
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
+            Progress& progress) const override {
+    const PixelWindow& window = surface_.window();
+    const Camera& camera = surface_.camera();
+    size_channel(channels.thickness, window, 0.0F);
+    surface_.for_tiles(lattice, stats, progress, [&](const LatticeGrid& grid, auto&& cross_all) {
+      std::array<double, tile_pixels> inside;  // depth at exits minus depth at entries
+      std::fill_n(inside.begin(), grid.rows() * tile_side, 0.0);
+      cross_all([&](std::size_t at, Index, const Crossing& crossing) {
+        inside[at] += crossing.entering ? -crossing.depth : crossing.depth;
+      });
+      for_pixels(grid, [&](int column, int row, std::size_t at) {
+        const double length_per_depth = glm::length(ray(camera, camera.x_of(column), camera.y_of(row)).direction);
+        const double thickness = std::max(0.0, inside[at]) * length_per_depth;
+        const auto opacity = static_cast<float>(std::min(1.0, xray_.alpha_length * thickness));
+        const std::size_t pixel = window.place(column, row);
+        image.pixels[pixel] = Vec4f(xray_.color * opacity, opacity);
+        if (channels.thickness != nullptr) (*channels.thickness)[pixel] = static_cast<float>(thickness);
+      });
+    });
+  }
+
+ private:
+  BinnedSurface surface_;
+  const XrayParameters& xray_;
+};
+
 }  // namespace
 
-Image draw_surface(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                   const Channels& channels, Progress& progress) {
-  Image image(camera.width, camera.height);
-  if (channels.depth != nullptr) channels.depth->assign(image.pixels.size(), std::numeric_limits<float>::infinity());
-  if (channels.id != nullptr) channels.id->assign(image.pixels.size(), no_index);
-  const SurfaceShader shader(scene, camera, parameters);
-  for_tiles(scene, camera, stats, progress,
-            [&](const ProjectedVertices& vertices, const PixelBox& tile, std::span<const Index> triangles) {
-              struct Hit {
-                double depth = std::numeric_limits<double>::infinity();
-                Index triangle = no_index;
-                bool entering = true;
-              };
-              std::array<Hit, tile_pixels> nearest{};
-              std::uint64_t crossings = 0;
-              raster_tile(scene, camera, vertices, triangles, tile,
-                          [&](std::size_t at, Index triangle, const Crossing& crossing) {
-                            ++crossings;
-                            if (crossing.depth < nearest[at].depth) {
-                              nearest[at] = {crossing.depth, triangle, crossing.entering};
-                            }
-                          });
-              for_pixels(tile, [&](int column, int row, std::size_t at) {
-                const Hit& hit = nearest[at];
-                if (hit.triangle == no_index) return;
-                const Vec3f color =
-                    shader.shade(hit.triangle, camera.x_of(column), camera.y_of(row), hit.depth, !hit.entering);
-                image.at(column, row) = Vec4f(color, 1.0F);
-                const std::size_t pixel = pixel_index(camera, column, row);
-                if (channels.depth != nullptr) (*channels.depth)[pixel] = static_cast<float>(hit.depth);
-                if (channels.id != nullptr) (*channels.id)[pixel] = hit.triangle;
-              });
-              return crossings;
-            });
-  return image;
+std::unique_ptr<Frame> prepare_surface(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                       const PixelWindow& window, RenderStats& stats, const Progress& progress) {
+  return std::make_unique<SurfaceFrame>(scene, camera, parameters, window, stats, progress);
 }
 
-Image draw_xray(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                const Channels& channels, Progress& progress) {
-  Image image(camera.width, camera.height);
-  if (channels.thickness != nullptr) channels.thickness->assign(image.pixels.size(), 0.0F);
-  const double alpha_length = parameters.xray.alpha_length;
-  for_tiles(
-      scene, camera, stats, progress,
-      [&](const ProjectedVertices& vertices, const PixelBox& tile, std::span<const Index> triangles) {
-        std::array<double, tile_pixels> inside{};  // depth at exits minus depth at entries
-        std::uint64_t crossings = 0;
-        raster_tile(scene, camera, vertices, triangles, tile, [&](std::size_t at, Index, const Crossing& crossing) {
-          ++crossings;
-          inside[at] += crossing.entering ? -crossing.depth : crossing.depth;
-        });
-        for_pixels(tile, [&](int column, int row, std::size_t at) {
-          const double length_per_depth = glm::length(ray(camera, camera.x_of(column), camera.y_of(row)).direction);
-          const double thickness = std::max(0.0, inside[at]) * length_per_depth;
-          const auto opacity = static_cast<float>(std::min(1.0, alpha_length * thickness));
-          image.at(column, row) = Vec4f(parameters.xray.color * opacity, opacity);
-          if (channels.thickness != nullptr) {
-            (*channels.thickness)[pixel_index(camera, column, row)] = static_cast<float>(thickness);
-          }
-        });
-        return crossings;
-      });
-  return image;
+std::unique_ptr<Frame> prepare_xray(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                    const PixelWindow& window, RenderStats& stats, const Progress& progress) {
+  return std::make_unique<XrayFrame>(scene, camera, parameters, window, stats, progress);
 }
 
 }  // namespace atomesh

@@ -2,21 +2,18 @@
 // sample along each ray. Neither touches a tetrahedron.
 #pragma once
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/parameters.h"
-#include "core/progress.h"
+#include <memory>
+
 #include "render/renderer.h"
-#include "render/scene.h"
 
 namespace atomesh {
 
 // Mode surface: the nearest triangle in front of the eye, by Phong's model. Channels depth and id.
-Image draw_surface(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                   const Channels& channels, Progress& progress);
+std::unique_ptr<Frame> prepare_surface(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                       const PixelWindow& window, RenderStats& stats, const Progress& progress);
 
 // Mode xray: opacity min(1, alpha_length · thickness). Channel thickness. An eye inside the sample counts from itself.
-Image draw_xray(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                const Channels& channels, Progress& progress);
+std::unique_ptr<Frame> prepare_xray(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                    const PixelWindow& window, RenderStats& stats, const Progress& progress);
 
 }  // namespace atomesh

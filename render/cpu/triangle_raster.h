@@ -9,6 +9,7 @@
 #include "core/camera.h"
 #include "core/geometry.h"
 #include "render/cpu/tile_bins.h"
+#include "render/pixel_lattice.h"
 
 namespace atomesh {
 
@@ -75,21 +76,25 @@ class TriangleRaster {
   std::array<double, 3> depths_;
 };
 
-// Calls cross(column, row, triangle, its raster, crossing) for every crossing of a pixel's ray with one of the
-// triangles (indices into the surface), triangle by triangle.
+// Calls cross(column, row, triangle, its raster, crossing) for every crossing of a ray of the lattice's pixels within
+// `pixels` with one of the triangles (indices into the surface), triangle by triangle.
 template <class Cross>
 void cross_triangles(std::span<const Triangle> surface, const Camera& camera, const ProjectedVertices& vertices,
-                     std::span<const Index> triangles, const PixelBox& pixels, Cross&& cross) {
+                     std::span<const Index> triangles, const PixelBox& pixels, const PixelLattice& lattice,
+                     Cross&& cross) {
   const bool perspective = camera.projection == Projection::perspective;
   for (const Index triangle : triangles) {
     const Triangle& corners = surface[triangle];
     const PixelBox box = pixel_box(vertices, corners, camera.width, camera.height);
-    const TriangleRaster raster(vertices, corners, perspective);
+    const int first_column = lattice.column_from(std::max(pixels.first_column, box.first_column));
+    const int first_row = lattice.row_from(std::max(pixels.first_row, box.first_row));
     const int last_column = std::min(pixels.last_column, box.last_column);
     const int last_row = std::min(pixels.last_row, box.last_row);
-    for (int row = std::max(pixels.first_row, box.first_row); row <= last_row; ++row) {
+    if (first_column > last_column || first_row > last_row) continue;
+    const TriangleRaster raster(vertices, corners, perspective);
+    for (int row = first_row; row <= last_row; row += lattice.row_stride) {
       const TriangleRaster::Row sides = raster.row(camera.y_of(row - surface_ray_shift * surface_ray_lift));
-      for (int column = std::max(pixels.first_column, box.first_column); column <= last_column; ++column) {
+      for (int column = first_column; column <= last_column; column += lattice.column_stride) {
         Crossing crossing{};
         if (raster.crosses(sides, camera.x_of(column + surface_ray_shift), crossing))
           cross(column, row, triangle, raster, crossing);

@@ -20,7 +20,9 @@ Drawn draw_balls(const Scene& scene, const Camera& camera, const Parameters& par
                  BallSearch search = BallSearch::automatic) {
   Drawn drawn;
   const Channels channels{nullptr, &drawn.depth, &drawn.id};
-  drawn.image = draw_atom_balls(scene, camera, parameters, drawn.stats, channels, no_progress(), search);
+  drawn.image = Image(camera.width, camera.height);
+  prepare_atom_balls(scene, camera, parameters, whole_picture(camera), drawn.stats, no_progress(), search)
+      ->draw({}, drawn.image, drawn.stats, channels, no_progress());
   return drawn;
 }
 
@@ -176,8 +178,9 @@ TEST(AtomBalls, TooManyOverlapsAreLeftToTheHierarchy) {
   const Parameters parameters = looking(Mode::atoms, "iso");
   const Scene scene = make_scene(crystal(3, 2.5, 0.1), parameters);
   const Camera camera = make_camera(parameters, scene.bounds, 64, 64);
-  EXPECT_EQ(project_balls(scene, camera, 20), nullptr);  // 27 balls, each in one tile at least
-  EXPECT_NE(project_balls(scene, camera, 27 * 16), nullptr);
+  EXPECT_EQ(project_balls(scene, camera, whole_picture(camera), 20, no_progress()),
+            nullptr);  // 27 balls, each in one tile at least
+  EXPECT_NE(project_balls(scene, camera, whole_picture(camera), 27 * 16, no_progress()), nullptr);
 }
 
 TEST(AtomBalls, PictureIsTheSameForAnyNumberOfThreads) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "render/cpu/whole_picture_frame.h"
 #include "render/renderer.h"
 #include "tests/render/fixtures.h"
 
@@ -13,32 +12,46 @@ namespace {
 
 using namespace test;
 
-// Paints each pixel by a function of its image-plane position.
+// Paints each pixel by a function of its image-plane position; channels depth and thickness are that position.
 class Painter final : public Renderer {
  public:
-  explicit Painter(Vec4f (*paint)(double, double)) : paint_(paint) {}
+  using Paint = Vec4f (*)(double, double);
+  explicit Painter(Paint paint) : paint_(paint) {}
   std::string_view name() const override { return "painter"; }
   std::unique_ptr<Frame> prepare(const Scene&, const Camera& camera, const Parameters&, const PixelWindow& window,
                                  RenderStats&, Progress&) const override {
-    return std::make_unique<WholePictureFrame>(
-        window,
-        [this, &camera](RenderStats&, const Channels& channels, Progress&) { return picture(camera, channels); });
+    return std::make_unique<Painted>(paint_, camera, window);
   }
 
  private:
-  Image picture(const Camera& camera, const Channels& channels) const {
-    Image image(camera.width, camera.height);
-    for (int row = 0; row < camera.height; ++row) {
-      for (int column = 0; column < camera.width; ++column) {
-        image.at(column, row) = paint_(camera.x_of(column), camera.y_of(row));
-        if (channels.depth != nullptr) channels.depth->push_back(static_cast<float>(camera.x_of(column)));
-        if (channels.thickness != nullptr) channels.thickness->push_back(static_cast<float>(camera.y_of(row)));
+  class Painted final : public Frame {
+   public:
+    Painted(Paint paint, const Camera& camera, const PixelWindow& window)
+        : paint_(paint), camera_(camera), window_(window) {}
+    void draw(const PixelLattice& lattice, Image& image, RenderStats&, const Channels& channels,
+              Progress&) const override {
+      size_channel(channels.depth, window_, 0.0F);
+      size_channel(channels.thickness, window_, 0.0F);
+      const LatticeGrid grid(lattice, window_);
+      for (int j = 0; j < grid.rows(); ++j) {
+        for (int i = 0; i < grid.columns(); ++i) {
+          const double x = camera_.x_of(grid.column(i));
+          const double y = camera_.y_of(grid.row(j));
+          const std::size_t pixel = window_.place(grid.column(i), grid.row(j));
+          image.pixels[pixel] = paint_(x, y);
+          if (channels.depth != nullptr) (*channels.depth)[pixel] = static_cast<float>(x);
+          if (channels.thickness != nullptr) (*channels.thickness)[pixel] = static_cast<float>(y);
+        }
       }
     }
-    return image;
-  }
 
-  Vec4f (*paint_)(double, double);
+   private:
+    Paint paint_;
+    const Camera& camera_;
+    PixelWindow window_;
+  };
+
+  Paint paint_;
 };
 
 Camera unit_camera(int width, int height) {

@@ -76,7 +76,7 @@ int expect_every_entry_once(const Scene& scene, const Camera& camera, Parameters
   parameters.volume_surface.face_alpha = 0.25;
   const Image image = draw(cpu_renderer(), scene, camera, parameters).image;
   const reference::View view(scene, camera, parameters);
-  const reference::Bins triangles(camera, scene.surface.size(), [&](std::size_t i) {
+  const reference::Bins triangles(whole_picture(camera), scene.surface.size(), no_progress(), [&](std::size_t i) {
     return view.sight.extent_of_vertices(scene.surface[i].data(), 3);
   });
   int wrong = 0;
