@@ -1,11 +1,13 @@
 // atomesh bench SUITE: what things cost, beside published figures.
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 
 #include "app/cli/bench_preprocess.h"
 #include "app/cli/bench_seed_table.h"
 #include "app/cli/commands.h"
 #include "app/cli/output_file.h"
+#include "app/cli/report_html.h"
 #include "app/cli/session.h"
 #include "app/cli/text_values.h"
 #include "core/error.h"
@@ -17,6 +19,8 @@ namespace {
 struct BenchArguments {
   std::string suite;
   std::string markdown;
+  std::string html;
+  std::string svg;
   SeedTableOptions seed_table;
   PreprocessBenchOptions preprocess;
   std::size_t atoms = 0;
@@ -28,13 +32,35 @@ const std::vector<std::string>& suite_names() {
   return names;
 }
 
+void write_text(const std::string& path, const std::string& text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+void write_plots(const std::string& folder, const BenchResult& result) {
+  for (const BenchTable& section : result.tables) {
+    for (const Plot& plot : section.plots) {
+      write_text((std::filesystem::path(folder) / (plot.name + ".svg")).string(), plot_svg(plot));
+    }
+  }
+}
+
+void check_reports(const BenchArguments& arguments) {
+  if (!arguments.markdown.empty()) check_output(arguments.markdown, {".md"});
+  if (!arguments.html.empty()) check_output(arguments.html, {".html"});
+  if (!arguments.svg.empty() && !std::filesystem::is_directory(arguments.svg)) {
+    throw UsageError("--svg " + arguments.svg + ": is not a folder; make it first");
+  }
+}
+
 int run_bench(const BenchArguments& arguments, Session& session) {
   const auto& suites = suite_names();
   if (std::find(suites.begin(), suites.end(), arguments.suite) == suites.end()) {
     throw UsageError(
         fmt::format("bench: there is no suite \"{}\"; there are: {}", arguments.suite, fmt::join(suites, ", ")));
   }
-  if (!arguments.markdown.empty()) check_output(arguments.markdown, {".md"});
+  check_reports(arguments);
   BenchResult result;
   if (arguments.suite == "preprocess") {
     PreprocessBenchOptions options = arguments.preprocess;
@@ -48,11 +74,11 @@ int run_bench(const BenchArguments& arguments, Session& session) {
     bench_seed_table(options, session, result);
     session.print_text(result.text());
   }
-  if (!arguments.markdown.empty()) {
-    AtomicFile file(arguments.markdown);
-    file.write(result.markdown());
-    file.commit();
+  if (!arguments.markdown.empty()) write_text(arguments.markdown, result.markdown());
+  if (!arguments.html.empty()) {
+    write_text(arguments.html, report_html("atomesh bench " + arguments.suite, result.tables, report_origin()));
   }
+  if (!arguments.svg.empty()) write_plots(arguments.svg, result);
   session.write_json(result.json());
   return exit_done;
 }
@@ -86,6 +112,9 @@ Command add_bench(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app.add_option("--markdown", arguments->markdown, "Also write the tables as Markdown")->type_name("FILE.md");
+  app.add_option("--html", arguments->html, "Also write tables and plots as one HTML file that needs no other")
+      ->type_name("FILE.html");
+  app.add_option("--svg", arguments->svg, "Also write each plot into this folder, as NAME.svg")->type_name("FOLDER");
   app.footer(
       "Example:\n  atomesh bench seed-table --sample nacl-cracked --repeats 5 --json bench.json\n"
       "  atomesh bench preprocess --part tetrahedralize --markdown bench.md\n");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/cli/json.h"
+#include "app/cli/report_plot.h"
 #include "app/cli/session.h"
 #include "app/cli/text_table.h"
 
@@ -102,10 +103,13 @@ struct BenchRow {
   Json rmse{}, psnr{};
 };
 
+// One section of a report. The plots stand above the table in the HTML report, and become files of their own; text and
+// Markdown leave them out. A table without rows, TextTable({}), is left out too.
 struct BenchTable {
   std::string title;
   TextTable table;
   std::string caption;
+  std::vector<Plot> plots{};
 };
 
 // What a suite hands back.

@@ -12,6 +12,10 @@ class TextTable {
   explicit TextTable(std::vector<std::string> headings) : headings_(std::move(headings)) {}
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   bool empty() const { return rows_.empty(); }
+  const std::vector<std::string>& headings() const { return headings_; }
+  const std::vector<std::vector<std::string>>& rows() const { return rows_; }
+  // Which columns hold numbers alone.
+  std::vector<bool> numeric_columns() const;
 
   // Columns padded to their widest cell, numbers to the right, two blanks between.
   std::string text() const;
@@ -20,8 +24,6 @@ class TextTable {
   std::string csv() const;
 
  private:
-  std::vector<bool> numeric_columns() const;
-
   std::vector<std::string> headings_;
   std::vector<std::vector<std::string>> rows_;
 };

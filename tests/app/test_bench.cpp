@@ -50,7 +50,7 @@ class Bench : public ::testing::Test {
 
 TEST_F(Bench, MeshersAreSoundAndBesideCgal) {
   std::set<std::string> meshers;
-  for (const json& row : rows("tetrahedralize", "1000", {"--markdown", "bench.md"})) {
+  for (const json& row : rows("tetrahedralize", "1000", {"--markdown", "bench.md", "--html", "bench.html"})) {
     meshers.insert(row["what"]);
     EXPECT_GT(row["tetrahedra"], 3000U);
     EXPECT_TRUE(row.contains("bytes_per_tetrahedron"));
@@ -65,6 +65,8 @@ TEST_F(Bench, MeshersAreSoundAndBesideCgal) {
   EXPECT_TRUE(meshers.contains("tetrahedralize: delaunay"));
   EXPECT_TRUE(meshers.contains("tetrahedralize: pattern"));
   EXPECT_NE(place.read("bench.md").find("| crystal | CGAL, ms |"), std::string::npos);
+  EXPECT_NE(place.read("bench.html").find("<h1>atomesh bench preprocess</h1>"), std::string::npos);
+  EXPECT_NE(place.read("bench.html").find("CGAL, ms</th>"), std::string::npos);
 }
 
 TEST_F(Bench, DefectValuesAreTimedOnOneCoreAndOnAll) {
