@@ -65,26 +65,43 @@ Surface extract_surface(const TetMesh& mesh, Progress& progress) {
   return surface;
 }
 
-std::vector<Vec3f> face_normals(const Surface& surface, std::span<const Vec3> vertices) {
-  std::vector<Vec3f> normals;
-  normals.reserve(surface.triangles.size());
-  for (const Triangle& t : surface.triangles) normals.emplace_back(normalized_or_zero(area_vector(t, vertices)));
+std::vector<Vec3f> face_normals(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
+  std::vector<Vec3f> normals(triangles.size());
+  parallel_for(triangles.size(), items_per_check, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      normals[t] = Vec3f(normalized_or_zero(area_vector(triangles[t], vertices)));
+    }
+  });
   return normals;
 }
 
-std::vector<Vec3f> vertex_normals(const Surface& surface, std::span<const Vec3> vertices) {
-  std::vector<Vec3> sum(vertices.size(), Vec3(0.0));
-  for (const Triangle& t : surface.triangles) {
-    const Vec3 normal = normalized_or_zero(area_vector(t, vertices));
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 u = vertices[t[(i + 1) % 3]] - vertices[t[i]];
-      const Vec3 v = vertices[t[(i + 2) % 3]] - vertices[t[i]];
-      sum[t[i]] += std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * normal;
+std::vector<Vec3f> vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
+  std::vector<Vec3> sums(vertices.size(), Vec3(0.0));
+  // What triangles add is found in parallel, a stretch at a time, and added in their order: sums of doubles depend on
+  // it.
+  constexpr std::size_t stretch = 1 << 16;
+  std::vector<std::array<Vec3, 3>> shares(std::min(stretch, triangles.size()));
+  for (std::size_t first = 0; first < triangles.size(); first += stretch) {
+    const std::span<const Triangle> some = triangles.subspan(first, std::min(stretch, triangles.size() - first));
+    parallel_for(some.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const Triangle& t = some[n];
+        const Vec3 normal = normalized_or_zero(area_vector(t, vertices));
+        for (std::size_t i = 0; i < 3; ++i) {
+          const Vec3 u = vertices[t[(i + 1) % 3]] - vertices[t[i]];
+          const Vec3 v = vertices[t[(i + 2) % 3]] - vertices[t[i]];
+          shares[n][i] = std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * normal;
+        }
+      }
+    });
+    for (std::size_t n = 0; n < some.size(); ++n) {
+      for (std::size_t i = 0; i < 3; ++i) sums[some[n][i]] += shares[n][i];
     }
   }
-  std::vector<Vec3f> normals;
-  normals.reserve(sum.size());
-  for (const Vec3& s : sum) normals.emplace_back(normalized_or_zero(s));
+  std::vector<Vec3f> normals(vertices.size());
+  parallel_for(normals.size(), items_per_check, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) normals[v] = Vec3f(normalized_or_zero(sums[v]));
+  });
   return normals;
 }
 

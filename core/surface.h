@@ -23,11 +23,11 @@ struct Surface {
 Surface extract_surface(const TetMesh& mesh, Progress& progress = no_progress());
 
 // Outward unit normal of each triangle.
-std::vector<Vec3f> face_normals(const Surface& surface, std::span<const Vec3> vertices);
+std::vector<Vec3f> face_normals(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
 // Unit normal of each mesh vertex: the average of the normals of the triangles around it weighted by their angle at
 // the vertex, zero for vertices inside. Indexed like `vertices`.
-std::vector<Vec3f> vertex_normals(const Surface& surface, std::span<const Vec3> vertices);
+std::vector<Vec3f> vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
 double area(const Surface& surface, std::span<const Vec3> vertices);  // Å²
 // Volume enclosed, by the divergence theorem about the surface's centre, Å³.

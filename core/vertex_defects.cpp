@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <unordered_map>
 
 namespace atomesh {
 
 namespace {
-
-DefectValues values_of(const Defects& defects, std::size_t atom) {
-  return {defects.positional[atom], defects.extra[atom], defects.vacancy[atom]};
-}
 
 DefectValues largest(const DefectValues& a, const DefectValues& b) {
   return {std::max(a.positional, b.positional), std::max(a.extra, b.extra), std::max(a.vacancy, b.vacancy)};
@@ -25,9 +20,11 @@ struct PositionHash {
   }
 };
 
-void take_in_merged_atoms(const TetMesh& mesh, const Atoms& atoms, const Defects& defects,
-                          std::vector<DefectValues>& values) {
-  if (mesh.vertices.size() >= atoms.size()) return;
+}  // namespace
+
+VertexDefects::VertexDefects(const TetMesh& mesh, const Atoms& atoms, const Defects& defects)
+    : mesh_(mesh), defects_(defects), present_(defects.present()) {
+  if (!present_ || mesh.vertices.size() >= atoms.size()) return;
   std::vector<bool> named(atoms.size(), false);
   for (const Index atom : mesh.vertex_atom) {
     if (atom != no_index) named[atom] = true;
@@ -37,24 +34,20 @@ void take_in_merged_atoms(const TetMesh& mesh, const Atoms& atoms, const Defects
   for (std::size_t a = 0; a < atoms.size(); ++a) {
     if (named[a] || !defects.defective(a)) continue;
     DefectValues& there = unnamed[atoms.positions[a]];
-    there = largest(there, values_of(defects, a));
+    there = largest(there, of_atom(a));
   }
   if (unnamed.empty()) return;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const auto found = unnamed.find(mesh.vertices[v]);
-    if (found != unnamed.end() && mesh.vertex_atom[v] != no_index) values[v] = largest(values[v], found->second);
+    if (found == unnamed.end() || mesh.vertex_atom[v] == no_index) continue;
+    merged_.emplace(static_cast<Index>(v), largest(of_atom(mesh.vertex_atom[v]), found->second));
   }
 }
 
-}  // namespace
-
 std::vector<DefectValues> vertex_defects(const TetMesh& mesh, const Atoms& atoms, const Defects& defects) {
+  const VertexDefects look_up(mesh, atoms, defects);
   std::vector<DefectValues> values(mesh.vertices.size());
-  if (!defects.present()) return values;
-  for (std::size_t v = 0; v < values.size(); ++v) {
-    if (mesh.vertex_atom[v] != no_index) values[v] = values_of(defects, mesh.vertex_atom[v]);
-  }
-  take_in_merged_atoms(mesh, atoms, defects, values);
+  for (std::size_t v = 0; v < values.size(); ++v) values[v] = look_up[v];
   return values;
 }
 

@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "render/scene_parts.h"
 
 namespace atomesh {
 
 namespace {
+
+constexpr std::size_t vertices_per_range = 1 << 14;
 
 bool uses_tetrahedra(Mode mode) {
   return mode == Mode::volume_surface || mode == Mode::volume;
@@ -37,42 +40,41 @@ void check_parts(const Material& material, Mode mode, bool cut) {
   }
 }
 
-void add_surface(Scene& scene, const Material& material, const Parameters& parameters, const Surface& surface) {
-  scene.surface = surface.triangles;
-  if (scene.mode == Mode::volume_surface) {
-    scene.surface_tetrahedron = surface.tetrahedron;
-    scene.surface_face = surface.face;
-  }
+void add_surface(Scene& scene, const Material& material, const Parameters& parameters, Borrowable<Triangle> surface) {
+  scene.surface = std::move(surface);
   if (scene.mode == Mode::xray) return;
-  scene.face_normals = face_normals(surface, material.mesh.vertices);
+  scene.face_normals = face_normals(scene.surface, material.mesh.vertices);
   if (parameters.shading == Shading::smooth) {
-    scene.vertex_normals = vertex_normals(surface, material.mesh.vertices);
+    scene.vertex_normals = vertex_normals(scene.surface, material.mesh.vertices);
   }
 }
 
 void add_mesh(Scene& scene, const Material& material, const Parameters& parameters, Progress& progress) {
   const TetMesh& mesh = material.mesh;
   scene.delaunay = mesh.delaunay;
-  scene.vertices.reserve(mesh.vertices.size());
-  for (const Vec3& p : mesh.vertices) scene.vertices.emplace_back(p - scene.center);
+  scene.vertices.resize(mesh.vertices.size());
+  parallel_for(scene.vertices.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) scene.vertices[v] = Vec3f(mesh.vertices[v] - scene.center);
+  });
   progress.update(0.2);
 
-  const bool cut = any_cut(parameters);
-  if (cut) {
+  if (any_cut(parameters)) {
     TetMesh left;
     left.delaunay = mesh.delaunay;
     left.tetrahedra = cut_tetrahedra(mesh, parameters);
     if (uses_surface(scene.mode)) {
       left.vertices = mesh.vertices;
-      add_surface(scene, material, parameters, extract_surface(left));
+      add_surface(scene, material, parameters, extract_surface(left).triangles);
     }
     if (uses_tetrahedra(scene.mode)) scene.tetrahedra = std::move(left.tetrahedra);
   } else {
     if (uses_surface(scene.mode)) {
       const bool missing = material.surface.triangles.empty() && !mesh.tetrahedra.empty();
-      add_surface(scene, material, parameters, missing ? extract_surface(mesh) : material.surface);
+      add_surface(scene, material, parameters,
+                  missing ? Borrowable(extract_surface(mesh).triangles)
+                          : Borrowable<Triangle>::borrow(material.surface.triangles));
     }
-    if (uses_tetrahedra(scene.mode)) scene.tetrahedra = mesh.tetrahedra;
+    if (uses_tetrahedra(scene.mode)) scene.tetrahedra = Borrowable<Tetrahedron>::borrow(mesh.tetrahedra);
   }
   progress.update(0.6);
 
@@ -109,6 +111,14 @@ Scene make_scene(const Material& material, const Parameters& parameters, Progres
     add_mesh(scene, material, parameters, progress);
   }
   progress.update(1.0);
+  return scene;
+}
+
+Scene make_scene(Material&& material, const Parameters& parameters, Progress& progress) {
+  const Material& given = material;
+  Scene scene = make_scene(given, parameters, progress);
+  if (scene.tetrahedra.borrows()) scene.tetrahedra = std::move(material.mesh.tetrahedra);
+  if (scene.surface.borrows()) scene.surface = std::move(material.surface.triangles);
   return scene;
 }
 

@@ -9,6 +9,7 @@
 #include "core/material_file.h"
 #include "core/parameters.h"
 #include "core/progress.h"
+#include "render/borrowable.h"
 
 namespace atomesh {
 
@@ -21,21 +22,24 @@ struct Ball {
   Index atom;    // index into Material::atoms
 };
 
-// What is empty is not needed by the mode:
-//   volume_surface: vertices, tetrahedra, colors, surface, normals
-//   volume:         vertices, tetrahedra, scalars
-//   surface, xray:  vertices, surface; surface also normals
-//   atoms:          balls
-// Atoms that fail a cut plane are gone, with every tetrahedron that has one as a vertex; the surface is that of what is
-// left.
+// What is empty is not needed by the mode. Bytes beyond the material's; where nothing is cut, the tetrahedra and the
+// surface are the material's own. (A Delaunay mesh has some 6 tetrahedra a vertex: at most 7 bytes a tetrahedron.)
+//   volume_surface: vertices, colors, vertex_normals 12 + 16 + 12 a vertex, face_normals 12 a triangle; tetrahedra,
+//                   surface
+//   volume:         vertices, scalars 12 + 4 a vertex; tetrahedra
+//   surface:        vertices, vertex_normals 12 + 12 a vertex, face_normals 12 a triangle; surface
+//   xray:           vertices 12 a vertex; surface
+//   atoms:          balls 36 each
+// Cut planes add 16 a tetrahedron that is left (volume modes) and 12 a triangle. Atoms that fail a cut plane are gone,
+// with every tetrahedron that has one as a vertex; the surface is that of what is left.
 struct Scene {
   Mode mode = Mode::volume_surface;
   Vec3 center{0.0};  // Å, in the file's coordinates; subtract before converting to float
   // Of the whole uncut sample, so that cutting does not move the camera; in mode atoms grown by the largest radius, so
   // that no ball sticks out of the picture. In the file's coordinates.
   Bounds bounds;
-  std::vector<Vec3f> vertices;          // about center
-  std::vector<Tetrahedron> tetrahedra;  // positively oriented
+  std::vector<Vec3f> vertices;         // about center
+  Borrowable<Tetrahedron> tetrahedra;  // positively oriented
   // RGBA of each vertex (VolumeSurfaceParameters), in [0,1]. Atoms that share one vertex colour it with the largest of
   // each of their defect values. A vertex that is no atom, and every vertex of a material without defects, has the base
   // colour.
@@ -43,20 +47,21 @@ struct Scene {
   // Of each vertex: the weighted sum of its defect values divided by the largest in the uncut sample; 0 without
   // defects.
   std::vector<float> scalars;
-  std::vector<Triangle> surface;           // outward
-  std::vector<Index> surface_tetrahedron;  // behind each triangle (index into tetrahedra); empty in surface and xray
-  std::vector<std::uint8_t> surface_face;  // which of its faces
-  std::vector<Vec3f> face_normals;         // of each triangle
-  std::vector<Vec3f> vertex_normals;       // of each vertex, zero inside; empty with flat shading
-  bool delaunay = false;                   // see TetMesh::delaunay
+  Borrowable<Triangle> surface;       // outward
+  std::vector<Vec3f> face_normals;    // of each triangle
+  std::vector<Vec3f> vertex_normals;  // of each vertex, zero inside; empty with flat shading
+  bool delaunay = false;              // see TetMesh::delaunay
   std::vector<Ball> balls;
 };
 
 // Which parts of a .crb the mode (with these cut planes) needs, for read_material().
 MaterialParts parts_needed(const Parameters& parameters);
 
-// Throws Error when the mode needs something the material does not have (naming it). A mesh without tetrahedra (fewer
-// than four atoms, all in a plane) is fine and gives an empty picture.
+// The scene may borrow the material's tetrahedra and surface: they must outlive it and stay as they are. Throws Error
+// when the mode needs something the material does not have (naming it). A mesh without tetrahedra (fewer than four
+// atoms, all in a plane) is fine and gives an empty picture.
 Scene make_scene(const Material& material, const Parameters& parameters, Progress& progress = no_progress());
+// The same for a material that is given away: the scene keeps what it would borrow.
+Scene make_scene(Material&& material, const Parameters& parameters, Progress& progress = no_progress());
 
 }  // namespace atomesh

@@ -8,6 +8,8 @@ namespace atomesh {
 
 namespace {
 
+constexpr std::size_t vertices_per_range = 1 << 14;
+
 // What is brighter than 1 keeps its hue: clamping each component would turn the strongest defects white.
 Vec4f saturate(const Vec4f& sum) {
   const Vec3f color = glm::max(Vec3f(sum), 0.0F);
@@ -18,14 +20,14 @@ Vec4f saturate(const Vec4f& sum) {
 }  // namespace
 
 std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfaceParameters& parameters) {
-  const std::vector<DefectValues> defects = vertex_defects(material.mesh, material.atoms, material.defects);
+  const VertexDefects defects(material.mesh, material.atoms, material.defects);
   const Vec4f positional = parameters.positional_color * static_cast<float>(parameters.positional_multiplier);
   const Vec4f extra = parameters.extra_color * static_cast<float>(parameters.extra_multiplier);
   const Vec4f vacancy = parameters.vacancy_color * static_cast<float>(parameters.vacancy_multiplier);
-  std::vector<Vec4f> colors(defects.size());
-  parallel_for(colors.size(), 16384, [&](std::size_t begin, std::size_t end) {
+  std::vector<Vec4f> colors(material.mesh.vertices.size());
+  parallel_for(colors.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const DefectValues& d = defects[v];
+      const DefectValues d = defects[v];
       const Vec4f sum = parameters.base_color + d.positional * positional + d.extra * extra + d.vacancy * vacancy;
       colors[v] = saturate(sum);
     }
@@ -34,20 +36,24 @@ std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfacePa
 }
 
 std::vector<float> vertex_scalars(const Material& material, const VolumeParameters& parameters) {
-  const std::vector<DefectValues> defects = vertex_defects(material.mesh, material.atoms, material.defects);
-  std::vector<double> sums(defects.size());
-  double top = 0.0;
-  for (std::size_t v = 0; v < sums.size(); ++v) {
-    const DefectValues& d = defects[v];
-    sums[v] = static_cast<double>(d.positional) * parameters.positional_multiplier +
-              static_cast<double>(d.extra) * parameters.extra_multiplier +
-              static_cast<double>(d.vacancy) * parameters.vacancy_multiplier;
-    top = std::max(top, sums[v]);
-  }
-  std::vector<float> scalars(sums.size(), 0.0F);
-  if (top > 0.0) {
-    for (std::size_t v = 0; v < sums.size(); ++v) scalars[v] = static_cast<float>(std::clamp(sums[v] / top, 0.0, 1.0));
-  }
+  const VertexDefects defects(material.mesh, material.atoms, material.defects);
+  const auto sum = [&](std::size_t v) {
+    const DefectValues d = defects[v];
+    return static_cast<double>(d.positional) * parameters.positional_multiplier +
+           static_cast<double>(d.extra) * parameters.extra_multiplier +
+           static_cast<double>(d.vacancy) * parameters.vacancy_multiplier;
+  };
+  std::vector<float> scalars(material.mesh.vertices.size(), 0.0F);
+  std::vector<double> largest(scalars.size() / vertices_per_range + 1, 0.0);
+  parallel_for(scalars.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
+    double& top = largest[begin / vertices_per_range];
+    for (std::size_t v = begin; v < end; ++v) top = std::max(top, sum(v));
+  });
+  const double top = *std::max_element(largest.begin(), largest.end());
+  if (!(top > 0.0)) return scalars;
+  parallel_for(scalars.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) scalars[v] = static_cast<float>(std::clamp(sum(v) / top, 0.0, 1.0));
+  });
   return scalars;
 }
 

@@ -66,7 +66,7 @@ TEST(Surface, IsClosedAndOutward) {
 TEST(Surface, NormalsOfACube) {
   const TetMesh cube = test::cube_of_six(2.0, Vec3(-1.0));
   const Surface surface = extract_surface(cube);
-  const auto faces = face_normals(surface, cube.vertices);
+  const auto faces = face_normals(surface.triangles, cube.vertices);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     Vec3 centre(0.0);
     for (const Index v : surface.triangles[i]) centre += cube.vertices[v] / 3.0;
@@ -75,7 +75,7 @@ TEST(Surface, NormalsOfACube) {
     EXPECT_NEAR(glm::length(faces[i]), 1.0F, 1e-6F);
   }
   // Weighted by angle, a corner of a cube does not feel how its faces are cut into triangles.
-  const auto vertices = vertex_normals(surface, cube.vertices);
+  const auto vertices = vertex_normals(surface.triangles, cube.vertices);
   ASSERT_EQ(vertices.size(), cube.vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     EXPECT_NEAR(glm::length(Vec3(vertices[v]) - glm::normalize(cube.vertices[v])), 0.0, 1e-6);
@@ -84,7 +84,7 @@ TEST(Surface, NormalsOfACube) {
 
 TEST(Surface, VerticesInsideHaveNoNormal) {
   const TetMesh block = test::cubes(2, never);
-  const auto normals = vertex_normals(extract_surface(block), block.vertices);
+  const auto normals = vertex_normals(extract_surface(block).triangles, block.vertices);
   for (std::size_t v = 0; v < normals.size(); ++v) {
     const bool inside = block.vertices[v] == Vec3(1.0);
     EXPECT_EQ(glm::length(normals[v]) == 0.0F, inside) << v;

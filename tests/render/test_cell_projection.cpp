@@ -234,7 +234,7 @@ TEST(CellProjection, OrderOfTheCellsInTheFileDoesNotMatter) {
   scene.surface.clear();
   const Camera camera = make_camera(parameters, scene.bounds, 64, 64);
   const Image image = picture(scene, camera, parameters);
-  std::reverse(scene.tetrahedra.begin(), scene.tetrahedra.end());
+  std::ranges::reverse(scene.tetrahedra.own());
   EXPECT_LE(compare_images(image, picture(scene, camera, parameters)).max, 2e-6);
   scene.delaunay = true;  // an order that is wrong for this mesh
   EXPECT_LE(compare_images(image, picture(scene, camera, parameters)).max, 2e-6);

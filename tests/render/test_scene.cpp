@@ -1,6 +1,8 @@
 // Material and parameters → Scene: what each mode is given.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/elements.h"
 #include "core/error.h"
 #include "render/scene.h"
@@ -19,7 +21,6 @@ TEST(Scene, HoldsOnlyWhatItsModeNeeds) {
   EXPECT_EQ(both.tetrahedra.size(), 48U);
   EXPECT_EQ(both.colors.size(), 27U);
   EXPECT_EQ(both.surface.size(), 48U);
-  EXPECT_EQ(both.surface_tetrahedron.size(), 48U);
   EXPECT_EQ(both.face_normals.size(), 48U);
   EXPECT_EQ(both.vertex_normals.size(), 27U);
   EXPECT_TRUE(both.scalars.empty());
@@ -35,10 +36,42 @@ TEST(Scene, HoldsOnlyWhatItsModeNeeds) {
   const Scene xray = scene_of(Mode::xray);
   EXPECT_EQ(xray.surface.size(), 48U);
   EXPECT_TRUE(xray.face_normals.empty());
-  EXPECT_TRUE(xray.surface_tetrahedron.empty());
   const Scene atoms = scene_of(Mode::atoms);
   EXPECT_EQ(atoms.balls.size(), 27U);
   EXPECT_TRUE(atoms.vertices.empty());
+}
+
+TEST(Scene, BorrowsWhatIsNotCutAndOwnsWhatIsWrittenTo) {
+  const Material material = box_material(2, 2, 2, 1.0);
+  Parameters parameters = looking(Mode::volume_surface, "front");
+  Scene scene = make_scene(material, parameters);
+  EXPECT_EQ(scene.tetrahedra.data(), material.mesh.tetrahedra.data());
+  EXPECT_EQ(scene.surface.data(), material.surface.triangles.data());
+  // Copies borrow too; writing to one changes neither the material nor the others.
+  Scene copy = scene;
+  EXPECT_EQ(copy.tetrahedra.data(), material.mesh.tetrahedra.data());
+  std::ranges::reverse(copy.tetrahedra.own());
+  copy.surface.clear();
+  EXPECT_FALSE(copy.tetrahedra.borrows());
+  EXPECT_EQ(copy.tetrahedra[0], material.mesh.tetrahedra.back());
+  EXPECT_TRUE(copy.surface.empty());
+  EXPECT_EQ(scene.tetrahedra, material.mesh.tetrahedra);
+  EXPECT_EQ(scene.surface, material.surface.triangles);
+  // Copies and moves of what is owned have their own.
+  const Scene second = copy;
+  EXPECT_NE(second.tetrahedra.data(), copy.tetrahedra.data());
+  const Scene moved = std::move(copy);
+  EXPECT_EQ(moved.tetrahedra, second.tetrahedra);
+  scene.tetrahedra.push_back({0, 1, 2, 3});
+  EXPECT_EQ(scene.tetrahedra.size(), material.mesh.tetrahedra.size() + 1);
+  // A material that is given away leaves what is needed with the scene.
+  scene = make_scene(Material(material), parameters);
+  EXPECT_FALSE(scene.tetrahedra.borrows());
+  EXPECT_FALSE(scene.surface.borrows());
+  EXPECT_EQ(scene.tetrahedra, material.mesh.tetrahedra);
+  EXPECT_EQ(scene.surface, material.surface.triangles);
+  parameters.cut_planes[0] = {true, {1, 0, 0}, CutPlane::Side::less_equal, 1.0};
+  EXPECT_FALSE(make_scene(material, parameters).tetrahedra.borrows());
 }
 
 TEST(Scene, PartsNeededFollowTheModeAndTheCuts) {
@@ -156,7 +189,7 @@ TEST(Scene, CutPlanesTakeAtomsTetrahedraAndLeaveAClosedSurface) {
   Scene scene = make_scene(material, parameters);
   EXPECT_EQ(scene.tetrahedra.size(), 2U * 4U * 3U * 6U);
   EXPECT_EQ(scene.surface.size(), 2U * 2U * (2U * 4U + 4U * 3U + 3U * 2U));
-  EXPECT_TRUE(is_closed({scene.surface, {}, {}}));
+  EXPECT_TRUE(is_closed({scene.surface.own(), {}, {}}));
   EXPECT_EQ(scene.bounds.max, Vec3(4.0));  // the camera does not move
   parameters.mode = Mode::xray;
   EXPECT_EQ(make_scene(material, parameters).surface, scene.surface);
