@@ -109,6 +109,7 @@ class Finder {
     check_mesh();
     check_surface();
     check_defects();
+    check_fields();
     for (const StageTime& stage : m_.provenance.stages) {
       if (!std::isfinite(stage.ms)) report("provenance", "the time of stage " + stage.name + " is not a number");
     }
@@ -221,6 +222,17 @@ class Finder {
       if (substitution.vacancy >= defects.vacancies.size()) {
         report("substitutions", "vacancy " + std::to_string(substitution.vacancy) + " does not exist");
       }
+    }
+  }
+
+  void check_fields() {
+    std::set<std::string_view> names;
+    for (const VertexField& field : m_.fields) {
+      if (field.name.empty()) report("field names", "a field without a name");
+      if (!names.insert(field.name).second) report("field names", field.name + " stands twice");
+      if (field.values.size() != counts_.vertices) report("fields", field.name + ": not one value for each vertex");
+      report("fields",
+             check_finite(std::span<const float>(field.values), 1, (field.name + ": vertex").c_str(), progress_));
     }
   }
 

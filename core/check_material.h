@@ -25,8 +25,8 @@ struct MaterialProblem {
 
 // The first thing wrong, if any: arrays of different lengths, numbers that are not finite, indices out of range, a
 // tetrahedron that names a vertex twice, a surface triangle that is not the face of its tetrahedron, species names that
-// are empty, repeated or have blanks. Arrays that are empty are taken as not read. Geometry (orientation, closedness)
-// is not looked at: validate() does that.
+// are empty, repeated or have blanks, fields without a name of their own. Arrays that are empty are taken as not read.
+// Geometry (orientation, closedness) is not looked at: validate() does that.
 std::optional<MaterialProblem> find_problem(const Material& material, const MaterialCounts& counts,
                                             Progress& progress = no_progress());
 

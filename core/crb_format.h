@@ -1,4 +1,4 @@
-// The .crb file, version 2. Everything is little-endian; offsets count bytes from the file's start.
+// The .crb file, version 3. Everything is little-endian; offsets count bytes from the file's start.
 //
 //   header   32 bytes   magic "ATOMESH\0", u32 version, u32 sections, u64 file size,
 //                       u64 XXH3-64 of the header's first 24 bytes and the whole table
@@ -33,12 +33,15 @@
 //   vacancies       for each: f64 position[3], u32 species, u32 votes                               vacancies > 0
 //   extras          for each: u32 atom, u32 votes                                                   extras > 0
 //   substitutions   for each: u32 atom, u32 expected species, u32 index into the vacancies          substitutions > 0
+//   field names     string for each                                                                 fields > 0
+//   fields          f32[fields][v]                                                                  fields > 0, v > 0
 //   provenance      string program, string input, u32 and pairs of strings (options), u32 and string with u64
 //                   (counts), u32 and string with f64 ms (stages)                                   always
 //
 // A string is u32 length and that many bytes of UTF-8.
 //
-// Version 1 had no substitutions: neither the section nor their number, the last of the counts. It is still read.
+// Version 2 had no fields, and version 1 no substitutions either: neither the sections nor their numbers, which stand
+// last in the counts. Both are still read.
 #pragma once
 
 #include <array>
@@ -51,7 +54,7 @@ namespace atomesh {
 static_assert(std::endian::native == std::endian::little, ".crb is read and written without swapping bytes");
 
 inline constexpr std::string_view crb_magic{"ATOMESH\0", 8};
-inline constexpr std::uint32_t crb_version = 2;
+inline constexpr std::uint32_t crb_version = 3;
 inline constexpr std::uint32_t crb_oldest_version = 1;
 inline constexpr std::size_t crb_block = std::size_t{1} << 20U;
 inline constexpr std::uint64_t crb_largest_ratio = 1024;
@@ -90,10 +93,12 @@ struct CrbCounts {
   std::uint64_t extras;
   std::uint64_t flags;
   std::uint64_t substitutions;
+  std::uint64_t fields;
 };
-static_assert(sizeof(CrbCounts) == 80);
-// What version 1 has of them.
+static_assert(sizeof(CrbCounts) == 88);
+// What versions 1 and 2 have of them.
 inline constexpr std::size_t crb_counts_size_1 = 72;
+inline constexpr std::size_t crb_counts_size_2 = 80;
 
 // Bits of CrbCounts::flags.
 inline constexpr std::uint64_t crb_has_unit_cell = 1;

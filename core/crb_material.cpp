@@ -43,7 +43,8 @@ CrbCounts crb_counts(const Material& m) {
           m.defects.vacancies.size(),
           m.defects.extras.size(),
           flags,
-          m.defects.substitutions.size()};
+          m.defects.substitutions.size(),
+          m.fields.size()};
 }
 
 ByteWriter species_bytes(const Material& m) {
@@ -131,6 +132,7 @@ class Sections {
       add("defects", std::move(bytes), 4);
     }
     add_sites(m.defects);
+    add_fields(m.fields);
     add("provenance", provenance_bytes(m.provenance));
   }
 
@@ -160,6 +162,17 @@ class Sections {
     }
     add("scalar names", std::move(names));
     add("scalars", std::move(values), 8);
+  }
+  void add_fields(const std::vector<VertexField>& fields) {
+    if (fields.empty()) return;
+    ByteWriter names;
+    ByteWriter values;
+    for (const VertexField& field : fields) {
+      names.string(field.name);
+      values.values(field.values);
+    }
+    add("field names", std::move(names));
+    if (!fields.front().values.empty()) add("fields", std::move(values), 4);
   }
   void add_sites(const Defects& defects) {
     ByteWriter vacancies;
@@ -200,12 +213,13 @@ class MaterialReader {
     const bool mesh = parts_.tetrahedra || parts_.surface;
     // Each step reads some sections; the progress counts their bytes.
     using Step = void (MaterialReader::*)();
-    const std::array<std::pair<bool, Step>, 6> steps{{{true, &MaterialReader::read_small},
+    const std::array<std::pair<bool, Step>, 7> steps{{{true, &MaterialReader::read_small},
                                                       {parts_.atoms, &MaterialReader::read_atoms},
                                                       {mesh, &MaterialReader::read_vertices},
                                                       {parts_.tetrahedra, &MaterialReader::read_tetrahedra},
                                                       {parts_.surface, &MaterialReader::read_surface},
-                                                      {parts_.defects, &MaterialReader::read_defects}}};
+                                                      {parts_.defects, &MaterialReader::read_defects},
+                                                      {mesh && parts_.fields, &MaterialReader::read_fields}}};
     double done = 0.0;
     for (const auto& [wanted, step] : steps) {
       if (wanted) (this->*step)();
@@ -231,6 +245,7 @@ class MaterialReader {
     const auto since_1 = bytes.value<std::array<std::byte, crb_counts_size_1>>();
     std::memcpy(&counts_, since_1.data(), since_1.size());
     if (file_.version() > 1) counts_.substitutions = bytes.value<std::uint64_t>();
+    if (file_.version() > 2) counts_.fields = bytes.value<std::uint64_t>();
     bytes.finish();
     for (const std::uint64_t count : {counts_.atoms, counts_.vertices, counts_.tetrahedra, counts_.triangles}) {
       if (count >= no_index) file_.fail("counts", "more than 4,294,967,294 of something");
@@ -244,7 +259,7 @@ class MaterialReader {
 
   // The file has the sections its counts call for, and no others.
   void check_table() const {
-    const std::array<std::pair<const char*, bool>, 20> sections{{
+    const std::array<std::pair<const char*, bool>, 22> sections{{
         {"counts", true},
         {"species", true},
         {"box", true},
@@ -264,6 +279,8 @@ class MaterialReader {
         {"vacancies", counts_.vacancies > 0},
         {"extras", counts_.extras > 0},
         {"substitutions", counts_.substitutions > 0},
+        {"field names", counts_.fields > 0},
+        {"fields", counts_.fields > 0 && counts_.vertices > 0},
         {"provenance", true},
     }};
     auto next = file_.table().begin();
@@ -419,6 +436,20 @@ class MaterialReader {
         defects.substitutions.push_back(substitution);
       }
       bytes.finish();
+    }
+  }
+
+  void read_fields() {
+    if (counts_.fields == 0) return;
+    ByteReader names(file_, "field names", progress_);
+    for (std::uint64_t i = 0; i < counts_.fields; ++i) m_.fields.push_back({names.string(), {}});
+    names.finish();
+    if (counts_.vertices == 0) return;
+    // As with the columns: the names have been there, so the product cannot overflow.
+    const std::vector<float> values = array<float>("fields", counts_.fields * counts_.vertices);
+    for (std::size_t i = 0; i < m_.fields.size(); ++i) {
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(i * counts_.vertices);
+      m_.fields[i].values.assign(first, first + static_cast<std::ptrdiff_t>(counts_.vertices));
     }
   }
 

@@ -49,8 +49,9 @@ std::string toml_value(const Parameters& parameters, const std::string& key) {
     case ParameterType::integer:
       return text;
     case ParameterType::real:
-      return text;
+      return text == "auto" ? toml_string(text) : text;
     case ParameterType::choice:
+    case ParameterType::text:
       return toml_string(text);
     case ParameterType::rgb:
     case ParameterType::rgba:
@@ -79,6 +80,10 @@ std::pair<std::string, std::string> split_key(const std::string& key) {
                                   : std::pair{key.substr(0, dot), key.substr(dot + 1)};
 }
 
+bool said_by_absence(const Parameters& parameters, const std::string& key) {
+  return parameter_row(key).key.ends_with("<species>") && get_parameter(parameters, key) == "auto";
+}
+
 std::vector<std::string> keys_to_write(const Parameters& parameters) {
   std::set<std::string> species;
   for (const auto& [name, color] : parameters.atoms.colors) species.insert(name);
@@ -86,8 +91,7 @@ std::vector<std::string> keys_to_write(const Parameters& parameters) {
   for (const auto& [name, radius] : parameters.atoms.radii) species.insert(name);
   std::vector<std::string> keys;
   for (std::string& key : parameter_keys({species.begin(), species.end()})) {
-    // "auto" is said by leaving the key out.
-    if (get_parameter(parameters, key) != "auto") keys.push_back(std::move(key));
+    if (!said_by_absence(parameters, key)) keys.push_back(std::move(key));
   }
   return keys;
 }

@@ -4,7 +4,7 @@
 // Lines that are empty or start with # are skipped; fields are separated by blanks. Numbers are the shortest decimals
 // that read back to the same bits. Sections stand in this order, and those marked with ? are left out when empty:
 //
-//   atomesh-crt 2
+//   atomesh-crt 3
 //   program "…", input "…", option "name" "value", count "name" N, stage "name" MS      (one a line, the last three any
 //                                                                                      number of times)
 //   species N               N lines: "name" radius
@@ -21,9 +21,11 @@
 //   vacancies N         ?   N lines: x y z species votes
 //   extras N            ?   N lines: atom votes
 //   substitutions N     ?   N lines: atom, the species expected in its place, index of the vacancy it fills
+//   fields N            ?   N lines: "name"; then a line for each vertex: one value for each field
 //   end
 //
-// Indices count from 0. Strings in quotes know \" \\ \n \t and \xHH. Version 1, still read, has no substitutions.
+// Indices count from 0. Strings in quotes know \" \\ \n \t and \xHH. Versions 1 and 2 are still read: 2 has no fields,
+// 1 no substitutions either.
 #pragma once
 
 #include "core/material_file.h"
@@ -31,7 +33,7 @@
 namespace atomesh {
 
 inline constexpr std::string_view crt_magic{"atomesh-crt"};
-inline constexpr int crt_version = 2;
+inline constexpr int crt_version = 3;
 inline constexpr int crt_oldest_version = 1;
 
 // `bytes` is the whole file, `path` its name in messages.

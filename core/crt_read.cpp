@@ -29,6 +29,7 @@ class CrtReader {
     read_tetrahedra();
     read_surface();
     read_defects();
+    if (version_ > 2 && word() == "fields") read_fields();
     expect_word("end");
     end_of_line();
     if (advance()) fail("expected nothing after \"end\"");
@@ -401,6 +402,26 @@ class CrtReader {
     }
   }
 
+  void read_fields() {
+    expect_word("fields");
+    const std::size_t count = count_of_lines(3);
+    const std::size_t vertices = m_.mesh.vertices.size();
+    // Every value is at least two bytes.
+    if (count != 0 && vertices > (bytes_.size() - lines_.offset() + 1) / (2 * count))
+      fail("the file is too short for its fields");
+    m_.fields.resize(count);
+    for (VertexField& field : m_.fields) {
+      finish_line("a field's name");
+      field.name = string();
+      field.values.resize(vertices);
+    }
+    for (std::size_t v = 0; v < vertices && count != 0; ++v) {
+      finish_line("the fields of a vertex");
+      for (VertexField& field : m_.fields) field.values[v] = real_float("a value");
+    }
+    finish_line("end");
+  }
+
   // What needs more than one line to see.
   void check() const {
     if (const auto problem = find_problem(m_, counts_of(m_))) {
@@ -437,6 +458,7 @@ Material read_crt(std::string_view bytes, const std::string& path, const Materia
     material.mesh.vertices = {};
     material.mesh.vertex_atom = {};
   }
+  if (!parts.fields || (!parts.tetrahedra && !parts.surface)) material.fields = {};
   if (!parts.defects) material.defects = {};
   return material;
 }

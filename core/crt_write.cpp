@@ -72,7 +72,7 @@ class CrtWriter {
   CrtWriter(const std::string& path, const Material& material, Progress& progress)
       : m_(material), file_(path), progress_(progress) {
     lines_total_ = m_.atoms.size() + m_.mesh.vertices.size() + m_.mesh.tetrahedra.size() + m_.surface.triangles.size() +
-                   m_.defects.positional.size();
+                   m_.defects.positional.size() + (m_.fields.empty() ? 0 : m_.mesh.vertices.size());
   }
 
   void write() {
@@ -80,6 +80,7 @@ class CrtWriter {
     write_atoms();
     write_mesh();
     write_defects();
+    write_fields();
     file_.write("end\n");
     progress_.update(1.0);
     file_.commit();
@@ -247,6 +248,19 @@ class CrtWriter {
     }
     text += '\n';
     file_.write(text);
+  }
+
+  void write_fields() {
+    if (m_.fields.empty()) return;
+    std::string text = "# names, then a line for each vertex\n";
+    Line line(text);
+    line.word("fields").number(m_.fields.size()).end();
+    for (const VertexField& field : m_.fields) line.word(quoted(field.name)).end();
+    file_.write(text);
+    write_lines(m_.mesh.vertices.size(), [&](std::size_t v, Line& l) {
+      for (const VertexField& field : m_.fields) l.number(field.values[v]);
+    });
+    file_.write("\n");
   }
 
   const Material& m_;

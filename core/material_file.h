@@ -18,6 +18,7 @@ struct MaterialParts {
   bool tetrahedra = true;  // with the vertices
   bool surface = true;     // with the vertices; Surface::tetrahedron and face only beside the tetrahedra
   bool defects = true;
+  bool fields = true;  // of the vertices; only beside them
 };
 
 // Reads .crb or .crt, told apart by content. Every section read is checked (length, checksum, indices in range) before

@@ -18,6 +18,8 @@ std::string values_text(const ParameterRow& row) {
       for (const std::string& choice : row.choices) text += (text.empty() ? "" : ", ") + choice;
       return text;
     }
+    case ParameterType::text:
+      return "name";
     case ParameterType::rgb:
       return "color";
     case ParameterType::rgba:

@@ -102,6 +102,7 @@ std::optional<std::string> text_of(const toml::node& node, const ParameterRow& r
     case ParameterType::real:
       return node.is_string() && *string() == "auto" ? string() : number_text(node);
     case ParameterType::choice:
+    case ParameterType::text:
       return string();
     case ParameterType::rgb:
     case ParameterType::rgba:
@@ -124,6 +125,8 @@ const char* toml_form(const ParameterRow& row) {
       return "a number";
     case ParameterType::choice:
       return "one of its words in quotes";
+    case ParameterType::text:
+      return "a name in quotes";
     case ParameterType::rgb:
       return "a color, [r, g, b] or \"#rrggbb\"";
     case ParameterType::rgba:
@@ -263,7 +266,7 @@ std::string edited_text(const std::string& path, const std::string& old_text, co
     const std::size_t behind = places.line_end(region.end);
     Room& room = rooms[split_key(leaf.key).first];
     if (behind > room.at) room = {behind, key_start(old_text, begin)};
-    if (get_parameter(parameters, leaf.key) == "auto") {
+    if (said_by_absence(parameters, leaf.key)) {
       edits.push_back({old_text.rfind('\n', begin) + 1, behind, ""});
       continue;
     }

@@ -42,6 +42,12 @@ class Table {
     entries.back().slot = [locate](Parameters& p) -> ParameterSlot { return DirectionSlot{&locate(p)}; };
   }
 
+  template <class Locate>
+  void name(std::string key, std::string label, std::string help, Locate locate) {
+    entries.push_back({{std::move(key), ParameterType::text, group_, std::move(label), "", 0, 0, {}, std::move(help)},
+                       [locate](Parameters& p) -> ParameterSlot { return NameSlot{&locate(p)}; }});
+  }
+
   // An enumeration whose values are 0, 1, … in the order of `choices`.
   template <class Locate>
   void choice(std::string key, std::string label, std::vector<std::string> choices, std::string help, Locate locate) {
@@ -191,6 +197,14 @@ void add_volume(Table& t) {
          "Weight of extra atom defects in an atom's scalar.", of(&P::extra_multiplier));
   t.real("volume.vacancy_multiplier", "Vacancy defect multiplier", "", 0, 1e6,
          "Weight of vacancy defects in an atom's scalar.", of(&P::vacancy_multiplier));
+  t.name("volume.field", "Field",
+         "The scalar that is shown: a field of an imported mesh, or defects; auto shows the defects where there are "
+         "any, else the first field.",
+         of(&P::field));
+  t.real("volume.range_low", "Range from", "", -1e300, 1e300,
+         "Value of the field that the color map's 0 stands for; auto is its smallest.", of(&P::range_low));
+  t.real("volume.range_high", "Range to", "", -1e300, 1e300,
+         "Value of the field that the color map's 1 stands for; auto is its largest.", of(&P::range_high));
   t.add("volume.color_map", ParameterType::color_map, "Color map", "", 0, 1,
         "Color and opacity coefficient of the normalized scalar: a preset, or 2 to 32 entries scalar:color with blanks "
         "between them.",

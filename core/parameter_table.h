@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,8 +26,14 @@ struct DirectionSlot {
   Vec3* vector;
 };
 
-using ParameterSlot = std::variant<bool*, int*, double*, float*, Vec3*, Vec3f*, Vec4f*, ColorMap*, DirectionSlot,
-                                   ChoiceSlot, SpeciesMap<Vec3f>*, SpeciesMap<bool>*, SpeciesMap<double>*>;
+// A name; empty is "auto".
+struct NameSlot {
+  std::string* name;
+};
+
+using ParameterSlot =
+    std::variant<bool*, int*, double*, float*, Vec3*, Vec3f*, Vec4f*, ColorMap*, DirectionSlot, ChoiceSlot, NameSlot,
+                 std::optional<double>*, SpeciesMap<Vec3f>*, SpeciesMap<bool>*, SpeciesMap<double>*>;
 
 struct ParameterEntry {
   ParameterRow row;

@@ -47,6 +47,13 @@ std::string range_text(const ParameterRow& row) {
   return "from " + real_text(row.min) + " to " + real_text(row.max) + (row.unit.empty() ? "" : " " + row.unit);
 }
 
+// Whether an unset number is a value too.
+bool has_auto(const ParameterRow& row) {
+  Parameters defaults;
+  return !row.key.ends_with(species_mark) && row.type == ParameterType::real &&
+         std::holds_alternative<std::optional<double>*>(find_entry(row.key).entry->slot(defaults));
+}
+
 std::string expected(const ParameterRow& row) {
   switch (row.type) {
     case ParameterType::boolean:
@@ -54,7 +61,7 @@ std::string expected(const ParameterRow& row) {
     case ParameterType::integer:
       return "a whole number " + range_text(row);
     case ParameterType::real:
-      return "a number " + range_text(row);
+      return (has_auto(row) ? "auto or a number " : "a number ") + range_text(row);
     case ParameterType::choice: {
       std::string text;
       for (std::size_t i = 0; i < row.choices.size(); ++i) {
@@ -63,6 +70,8 @@ std::string expected(const ParameterRow& row) {
       }
       return text;
     }
+    case ParameterType::text:
+      return "a name, without control characters, or auto";
     case ParameterType::rgb:
       return "a color, #rrggbb or r,g,b with each from 0 to 1";
     case ParameterType::rgba:
@@ -73,6 +82,10 @@ std::string expected(const ParameterRow& row) {
       break;
   }
   return "a preset's name or 2 to 32 entries scalar:color";
+}
+
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
 
 // Reads `text` into the value a slot points to. Returns false when it is not what the row expects; nothing is changed
@@ -108,6 +121,17 @@ class SetFromText {
     const auto at = std::find(row_.choices.begin(), row_.choices.end(), word);
     if (at == row_.choices.end()) return false;
     slot.set(static_cast<std::size_t>(at - row_.choices.begin()));
+    return true;
+  }
+  bool operator()(const NameSlot& slot) const {
+    if (text_.empty() || std::any_of(text_.begin(), text_.end(), is_control)) return false;
+    *slot.name = text_ == "auto" ? std::string() : std::string(text_);
+    return true;
+  }
+  bool operator()(std::optional<double>* value) const {
+    const auto read = in_range(read_real(text_));
+    if (!read && text_ != "auto") return false;
+    *value = read;
     return true;
   }
   // What is absent from these maps is what "auto" (or visible) means.
@@ -169,6 +193,8 @@ struct TextOf {
   std::string operator()(const ColorMap* value) const { return color_map_text(*value); }
   std::string operator()(const DirectionSlot& slot) const { return vector_text(*slot.vector); }
   std::string operator()(const ChoiceSlot& slot) const { return found.entry->row.choices.at(slot.index); }
+  std::string operator()(const NameSlot& slot) const { return slot.name->empty() ? "auto" : *slot.name; }
+  std::string operator()(const std::optional<double>* value) const { return *value ? real_text(**value) : "auto"; }
   std::string operator()(const SpeciesMap<bool>* map) const {
     const auto at = map->find(found.species);
     return at == map->end() || at->second ? "true" : "false";

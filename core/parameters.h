@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,9 +73,14 @@ struct VolumeSurfaceParameters {
 };
 
 // B.6.3.3. Scalar of an atom = weighted sum of its three defect values, normalised to [0,1] over the sample's atoms
-// (range [0, max]), coloured by the map.
+// (range [0, max]); or a field of an imported mesh, normalised from its range. Coloured by the map.
 struct VolumeParameters {
-  double alpha_length = 0.25;  // 1/Å: extinction = alpha_length · A
+  // A name in Material::fields, or "defects"; empty ("auto"): the defects where the material has them, else its first
+  // field.
+  std::string field;
+  std::optional<double> range_low;   // of the field, what the colour map's 0 stands for; absent ("auto"): its smallest
+  std::optional<double> range_high;  // and 1; its largest
+  double alpha_length = 0.25;        // 1/Å: extinction = alpha_length · A
   double positional_multiplier = 1.0;
   double extra_multiplier = 1.0;
   double vacancy_multiplier = 1.0;
@@ -137,7 +143,7 @@ struct Parameters {
 };
 
 // What a value is, for forms and for messages.
-enum class ParameterType { boolean, integer, real, choice, rgb, rgba, vector, color_map };
+enum class ParameterType { boolean, integer, real, choice, text, rgb, rgba, vector, color_map };
 
 struct ParameterRow {
   std::string key;  // "volume_surface.face_alpha", "light.1.position", "atoms.color.<species>"
@@ -159,8 +165,8 @@ const ParameterRow& parameter_row(std::string_view key);
 
 // Sets one value from text: "0.3", "true", "smooth", "#rrggbb" or "#rrggbbaa" or "0.1,0.2,0.3[,0.4]" for colours,
 // "x,y,z" for vectors, "viridis" or "0:#00000000 0.5:#ff0000 1:0.1,0.2,0.3,0.4" for colour maps. "auto" for a species'
-// colour or radius goes back to its own. Throws UsageError with key, text and what was expected (range, choices);
-// `parameters` is then unchanged.
+// colour or radius, a field or a range goes back to its own. Throws UsageError with key, text and what was expected
+// (range, choices); `parameters` is then unchanged.
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view text);
 // The value as text that set_parameter reads back to exactly the same value.
 std::string get_parameter(const Parameters& parameters, std::string_view key);

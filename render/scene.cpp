@@ -78,7 +78,7 @@ void add_mesh(Scene& scene, const Material& material, const Parameters& paramete
   }
   progress.update(0.6);
 
-  if (scene.mode == Mode::volume_surface) scene.colors = vertex_colors(material, parameters.volume_surface);
+  if (scene.mode == Mode::volume_surface) scene.colors = vertex_colors(material, parameters);
   if (scene.mode == Mode::volume) scene.scalars = vertex_scalars(material, parameters.volume);
 }
 
@@ -91,6 +91,7 @@ MaterialParts parts_needed(const Parameters& parameters) {
   parts.atoms = true;  // the vertices of the mesh are atoms
   parts.tetrahedra = uses_tetrahedra(mode) || (uses_surface(mode) && cut);
   parts.surface = uses_surface(mode) && !cut;
+  parts.fields = uses_tetrahedra(mode);
   parts.defects = uses_tetrahedra(mode) || (mode == Mode::atoms && parameters.atoms.regular_opacity < 1.0);
   return parts;
 }

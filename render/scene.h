@@ -42,10 +42,10 @@ struct Scene {
   Borrowable<Tetrahedron> tetrahedra;  // positively oriented
   // RGBA of each vertex (VolumeSurfaceParameters), in [0,1]. Atoms that share one vertex colour it with the largest of
   // each of their defect values. A vertex that is no atom, and every vertex of a material without defects, has the base
-  // colour.
+  // colour. Where a field is shown (VolumeParameters::field), the colour map's colour of its scalar.
   std::vector<Vec4f> colors;
   // Of each vertex: the weighted sum of its defect values divided by the largest in the uncut sample; 0 without
-  // defects.
+  // defects. Or the field's value, from its range to [0,1].
   std::vector<float> scalars;
   Borrowable<Triangle> surface;       // outward
   std::vector<Vec3f> face_normals;    // of each triangle

@@ -19,7 +19,9 @@ Vec4f saturate(const Vec4f& sum) {
 
 }  // namespace
 
-std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfaceParameters& parameters) {
+std::vector<Vec4f> vertex_colors(const Material& material, const Parameters& all) {
+  if (const VertexField* field = shown_field(material, all.volume)) return field_colors(*field, all.volume);
+  const VolumeSurfaceParameters& parameters = all.volume_surface;
   const VertexDefects defects(material.mesh, material.atoms, material.defects);
   const Vec4f positional = parameters.positional_color * static_cast<float>(parameters.positional_multiplier);
   const Vec4f extra = parameters.extra_color * static_cast<float>(parameters.extra_multiplier);
@@ -36,6 +38,7 @@ std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfacePa
 }
 
 std::vector<float> vertex_scalars(const Material& material, const VolumeParameters& parameters) {
+  if (const VertexField* field = shown_field(material, parameters)) return field_scalars(*field, parameters);
   const VertexDefects defects(material.mesh, material.atoms, material.defects);
   const auto sum = [&](std::size_t v) {
     const DefectValues d = defects[v];

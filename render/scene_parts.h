@@ -16,8 +16,16 @@ bool survives_cuts(const Parameters& parameters, const Vec3& point);
 // The tetrahedra all of whose vertices survive, in the mesh's order.
 std::vector<Tetrahedron> cut_tetrahedra(const TetMesh& mesh, const Parameters& parameters);
 
+// scene_fields.cpp
+// The field that is shown; nullptr for the defects. Throws UsageError naming the nearest for a name that is none.
+const VertexField* shown_field(const Material& material, const VolumeParameters& parameters);
+// From the field's range, or the one that is set, to [0,1]; what lies outside takes the nearer end, and a field of one
+// value the middle. Throws UsageError for a range that is set and empty.
+std::vector<float> field_scalars(const VertexField& field, const VolumeParameters& parameters);
+std::vector<Vec4f> field_colors(const VertexField& field, const VolumeParameters& parameters);
+
 // scene_colors.cpp: one value per mesh vertex.
-std::vector<Vec4f> vertex_colors(const Material& material, const VolumeSurfaceParameters& parameters);
+std::vector<Vec4f> vertex_colors(const Material& material, const Parameters& parameters);
 std::vector<float> vertex_scalars(const Material& material, const VolumeParameters& parameters);
 
 // scene_balls.cpp

@@ -19,6 +19,7 @@ struct MaterialKind {
   bool defects = true;
   bool surface_cells = true;
   bool substitutions = true;  // where there are defects
+  bool fields = true;
 };
 
 inline Material random_material(unsigned seed, const MaterialKind& kind = {}) {
@@ -97,6 +98,14 @@ inline Material random_material(unsigned seed, const MaterialKind& kind = {}) {
     m.defects.extras = {{static_cast<Index>(kind.atoms - 1), 8}};
     if (kind.substitutions) m.defects.substitutions = {{static_cast<Index>(kind.atoms - 1), 2, 1}};
   }
+  if (kind.fields) {
+    m.fields = {{"Density", {}}, {"a \"field\"\n", {}}, {"constant", {}}};
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      m.fields[0].values.push_back(any_float());
+      m.fields[1].values.push_back(any_float());
+      m.fields[2].values.push_back(-0.0F);
+    }
+  }
   m.provenance.program = "atomesh 0.1.0";
   m.provenance.input = "näcl \"1\".dat";
   m.provenance.options = {{"mesher", "auto"}, {"carve", ""}};
@@ -166,6 +175,10 @@ inline std::string difference(const Material& a, const Material& b) {
                   b.defects.substitutions.end(), same_substitution)) {
     return "substitutions";
   }
+  const auto same_field = [](const VertexField& s, const VertexField& t) {
+    return s.name == t.name && same_bits(s.values, t.values);
+  };
+  if (!std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), b.fields.end(), same_field)) return "fields";
   const Provenance& p = a.provenance;
   const Provenance& q = b.provenance;
   if (p.program != q.program || p.input != q.input || p.options != q.options || p.counts != q.counts)

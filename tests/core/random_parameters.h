@@ -34,7 +34,11 @@ inline Parameters random_parameters(unsigned seed, const std::vector<std::string
       case ParameterType::integer:
         set_parameter(parameters, key, std::to_string(static_cast<int>(real(row.min, row.max))));
         break;
+      case ParameterType::text:
+        set_parameter(parameters, key, std::array{"auto", "Density", "a \"name\" with \\", "µ"}[random() % 4]);
+        break;
       case ParameterType::real:
+        if (get_parameter(parameters, key) == "auto" && random() % 2 == 0) break;
         set_parameter(parameters, key,
                       row.key.ends_with("intensity") ? component() : real_text(real(row.min, row.max)));
         break;

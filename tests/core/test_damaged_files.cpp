@@ -140,55 +140,63 @@ TEST(DamagedCrb, OtherVersionsAreNamed) {
   bytes[8] = 7;
   reseal(bytes);
   write_bytes(path, bytes);
-  EXPECT_NE(refusal([&] { read_material(path); }).find("version 7, this program reads versions 1 to 2"),
+  EXPECT_NE(refusal([&] { read_material(path); }).find("version 7, this program reads versions 1 to 3"),
             std::string::npos);
   write_material(folder.file("a.crt"), random_material(3, small));
   std::string text = read_bytes(folder.file("a.crt"));
-  text.replace(text.find(" 2\n"), 2, " 12");
+  text.replace(text.find(" 3\n"), 2, " 12");
   write_bytes(folder.file("a.crt"), text);
   EXPECT_NE(
-      refusal([&] { read_material(folder.file("a.crt")); }).find("version 12, this program reads versions 1 to 2"),
+      refusal([&] { read_material(folder.file("a.crt")); }).find("version 12, this program reads versions 1 to 3"),
       std::string::npos);
 }
 
-// Version 1 ends its counts before the number of substitutions.
-TEST(DamagedCrb, VersionOneIsReadAndKnowsNoSubstitutions) {
+// Version 2 ends its counts before the number of fields, version 1 before that of substitutions.
+TEST(DamagedCrb, OlderVersionsAreReadAndKnowNothingOfWhatCameLater) {
   const TemporaryFolder folder;
-  test::MaterialKind kind = small;
-  kind.substitutions = false;
-  const Material material = random_material(3, kind);
-  const std::string path = folder.file("a.crb");
-  write_material(path, material, {.compress = false});
-  std::string bytes = read_bytes(path);
-  CrbHeader header{};
-  std::memcpy(&header, bytes.data(), sizeof(header));
-  header.version = 1;
-  const CrbEntry counts = entry_of(bytes, "counts");
-  bytes.erase(counts.offset + crb_counts_size_1, counts.raw - crb_counts_size_1);
-  header.file_size = bytes.size();
-  std::memcpy(bytes.data(), &header, sizeof(header));
-  for (std::size_t s = 0; s < header.sections; ++s) {
-    auto& entry = reinterpret_cast<CrbEntry*>(bytes.data() + sizeof(CrbHeader))[s];
-    if (entry.offset > counts.offset) {
-      entry.offset -= counts.raw - crb_counts_size_1;
-    } else {
-      entry.raw = entry.stored = crb_counts_size_1;
+  for (const unsigned version : {1U, 2U}) {
+    test::MaterialKind kind = small;
+    kind.fields = false;
+    kind.substitutions = version > 1;
+    const Material material = random_material(3, kind);
+    const std::string path = folder.file("a.crb");
+    write_material(path, material, {.compress = false});
+    std::string bytes = read_bytes(path);
+    CrbHeader header{};
+    std::memcpy(&header, bytes.data(), sizeof(header));
+    header.version = version;
+    const CrbEntry counts = entry_of(bytes, "counts");
+    const std::size_t size = version == 1 ? crb_counts_size_1 : crb_counts_size_2;
+    bytes.erase(counts.offset + size, counts.raw - size);
+    header.file_size = bytes.size();
+    std::memcpy(bytes.data(), &header, sizeof(header));
+    for (std::size_t s = 0; s < header.sections; ++s) {
+      auto& entry = reinterpret_cast<CrbEntry*>(bytes.data() + sizeof(CrbHeader))[s];
+      if (entry.offset > counts.offset) {
+        entry.offset -= counts.raw - size;
+      } else {
+        entry.raw = entry.stored = size;
+      }
     }
-  }
-  reseal(bytes);
-  write_bytes(path, bytes);
-  EXPECT_EQ(difference(read_material(path), material), "");
+    reseal(bytes);
+    write_bytes(path, bytes);
+    EXPECT_EQ(difference(read_material(path), material), "") << version;
 
-  write_material(folder.file("a.crt"), material);
-  std::string text = read_bytes(folder.file("a.crt"));
-  text.replace(text.find(" 2\n"), 2, " 1");
-  write_bytes(folder.file("a.crt"), text);
-  EXPECT_EQ(difference(read_material(folder.file("a.crt")), material), "");
-  write_material(folder.file("a.crt"), random_material(3, small));
-  text = read_bytes(folder.file("a.crt"));
-  text.replace(text.find(" 2\n"), 2, " 1");
-  write_bytes(folder.file("a.crt"), text);
-  EXPECT_NE(refusal([&] { read_material(folder.file("a.crt")); }).find("substitutions"), std::string::npos);
+    const auto as_version = [&](const Material& m) {
+      write_material(folder.file("a.crt"), m);
+      std::string text = read_bytes(folder.file("a.crt"));
+      text.replace(text.find(" 3\n"), 2, " " + std::to_string(version));
+      write_bytes(folder.file("a.crt"), text);
+      return folder.file("a.crt");
+    };
+    EXPECT_EQ(difference(read_material(as_version(material)), material), "");
+    kind.fields = version == 2;
+    kind.substitutions = version == 1;
+    EXPECT_NE(refusal([&] {
+                read_material(as_version(random_material(3, kind)));
+              }).find(version == 1 ? "substitutions" : "fields"),
+              std::string::npos);
+  }
 }
 
 TEST(DamagedCrb, AForgedSizeAllocatesNothing) {
@@ -303,6 +311,10 @@ TEST(DamagedCrt, MistakesAreNamedWithFileAndLine) {
   EXPECT_NE(message("species", "\"Na\"", "\"Na").find("quote"), std::string::npos);
   EXPECT_NE(message("species", "\"Na\"", "\"\\q\"").find("backslash"), std::string::npos);
   EXPECT_NE(message("species", "\"Na\"", "\"Cl\"").find("Cl stands twice"), std::string::npos);
+  EXPECT_NE(message("fields", "fields 3", "fields 9999").find("cannot follow"), std::string::npos);
+  EXPECT_NE(message("fields", "fields 3", "fields 60").find("too short for its fields"), std::string::npos);
+  EXPECT_NE(message("fields", "fields 3", "fields 2").find("expected a value"), std::string::npos);
+  EXPECT_NE(message("fields", "\"constant\"", "\"Density\"").find("Density stands twice"), std::string::npos);
   EXPECT_NE(message("extras", "\nend", "\nend\nmore").find("expected nothing after"), std::string::npos);
 }
 

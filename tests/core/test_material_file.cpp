@@ -27,6 +27,7 @@ std::vector<std::pair<std::string, MaterialKind>> kinds() {
   list.emplace_back("no columns", MaterialKind{.columns = false});
   list.emplace_back("no unit cell", MaterialKind{.unit_cell = false});
   list.emplace_back("no defects", MaterialKind{.defects = false});
+  list.emplace_back("no fields", MaterialKind{.fields = false});
   list.emplace_back("surface without cells", MaterialKind{.surface_cells = false});
   list.emplace_back("no tetrahedra", MaterialKind{.atoms = 3, .tetrahedra = 0});
   list.emplace_back("one atom", MaterialKind{.atoms = 1, .tetrahedra = 0});
@@ -94,8 +95,8 @@ TEST(MaterialFile, OnlyWhatIsAskedForIsRead) {
     const Material whole = random_material(8, {.own_vertices = own});
     for (const char* file : {"a.crb", "a.crt"}) {
       write_material(folder.file(file), whole);
-      for (int bits = 0; bits < 16; ++bits) {
-        const MaterialParts parts{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+      for (int bits = 0; bits < 32; ++bits) {
+        const MaterialParts parts{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0};
         Material expected = whole;
         if (!parts.atoms) {
           expected.atoms = {};
@@ -108,6 +109,7 @@ TEST(MaterialFile, OnlyWhatIsAskedForIsRead) {
         if (!parts.tetrahedra && !parts.surface) expected.mesh.vertices = {};
         if (!parts.tetrahedra && !parts.surface) expected.mesh.vertex_atom = {};
         if (!parts.defects) expected.defects = {};
+        if (!parts.fields || (!parts.tetrahedra && !parts.surface)) expected.fields = {};
         EXPECT_EQ(difference(read_material(folder.file(file), parts), expected), "") << file << " parts " << bits;
       }
     }
@@ -129,10 +131,11 @@ TEST(MaterialFile, SectionsAreListedAndVerticesNotStoredTwice) {
     return list;
   };
   using Names = std::vector<std::string>;
-  EXPECT_EQ(names(random_material(1)),
-            (Names{"counts", "species", "box", "unit cell", "positions", "atom species", "ids", "scalar names",
-                   "scalars", "tetrahedra", "surface", "surface cells", "surface faces", "defects", "vacancies",
-                   "extras", "substitutions", "provenance"}));
+  EXPECT_EQ(
+      names(random_material(1)),
+      (Names{"counts",       "species", "box",           "unit cell",   "positions",     "atom species",  "ids",
+             "scalar names", "scalars", "tetrahedra",    "surface",     "surface cells", "surface faces", "defects",
+             "vacancies",    "extras",  "substitutions", "field names", "fields",        "provenance"}));
   const Names own = names(random_material(1, {.own_vertices = true}));
   EXPECT_NE(std::find(own.begin(), own.end(), "vertices"), own.end());
   EXPECT_NE(std::find(own.begin(), own.end(), "vertex atoms"), own.end());
@@ -193,6 +196,10 @@ TEST(MaterialFile, AMaterialThatCouldNotBeReadBackIsNotWritten) {
   refuses("substitution that is no extra atom", [&](Material& m) { m.defects.extras.clear(); });
   refuses("substitution's species", [&](Material& m) { m.defects.substitutions[0].expected = 3; });
   refuses("substitution's vacancy", [&](Material& m) { m.defects.substitutions[0].vacancy = 2; });
+  refuses("field", [&](Material& m) { m.fields[0].values[1] = static_cast<float>(nan); });
+  refuses("field length", [&](Material& m) { m.fields[0].values.pop_back(); });
+  refuses("field without a name", [&](Material& m) { m.fields[0].name = ""; });
+  refuses("field twice", [&](Material& m) { m.fields[0].name = m.fields[1].name; });
   EXPECT_THROW(write_material(folder.file("a.vtu"), random_material(1)), UsageError);
 }
 

@@ -23,7 +23,7 @@ TEST(Crf, EveryParameterComesBackExactly) {
     const std::string path = folder.file(std::to_string(seed) + ".crf");
     write_crf(path, random);
     EXPECT_EQ(read_crf(path), random) << seed;
-    // Over any other base: the file names every value (species that are "auto" are the base's).
+    // Over any other base: the file names every value (only species that are "auto" are the base's).
     Parameters base = test::random_parameters(seed + 1000, {});
     EXPECT_EQ(read_crf(path, base), random) << seed;
   }

@@ -32,7 +32,7 @@ TEST(Parameters, TableNamesEveryKeyOnceAndExplainsIt) {
     EXPECT_TRUE(row.help.ends_with('.')) << row.key;
     EXPECT_EQ(row.type == ParameterType::choice, !row.choices.empty()) << row.key;
   }
-  EXPECT_EQ(keys.size(), 3U + 8 * 4 + 8 * 4 + 13 + 4 + 5 + 2 + 6 + 7 + 3);
+  EXPECT_EQ(keys.size(), 3U + 8 * 4 + 8 * 4 + 13 + 4 + 8 + 2 + 6 + 7 + 3);
 }
 
 TEST(Parameters, DefaultsAreWithinTheirOwnRanges) {
@@ -107,6 +107,24 @@ TEST(Parameters, SpeciesGoBackToTheirOwnWithAuto) {
   set_parameter(p, "atoms.visible.Na", "true");
   set_parameter(p, "atoms.radius.Na", "auto");
   EXPECT_EQ(p, Parameters());
+}
+
+TEST(Parameters, FieldsAndTheirRangeGoBackToTheirOwnWithAuto) {
+  Parameters p;
+  EXPECT_EQ(get_parameter(p, "volume.field"), "auto");
+  EXPECT_EQ(get_parameter(p, "volume.range_low"), "auto");
+  set_parameter(p, "volume.field", "wall distance");
+  set_parameter(p, "volume.range_low", "-2.5");
+  set_parameter(p, "volume.range_high", "0");
+  EXPECT_EQ(p.volume.field, "wall distance");
+  EXPECT_EQ(p.volume.range_low, -2.5);
+  EXPECT_EQ(p.volume.range_high, 0.0);
+  for (const char* key : {"volume.field", "volume.range_low", "volume.range_high"}) set_parameter(p, key, "auto");
+  EXPECT_EQ(p, Parameters());
+  EXPECT_EQ(refusal("volume.range_low", "low"),
+            "volume.range_low = \"low\": expected auto or a number from -1e+300 to 1e+300");
+  EXPECT_NE(refusal("volume.field", ""), "");
+  EXPECT_NE(refusal("volume.field", "two\nlines"), "");
 }
 
 TEST(Parameters, RefusalsNameKeyTextAndWhatWasExpected) {

@@ -289,10 +289,10 @@ TEST(SplitCells, CollapsedHexahedraAreTheShapesTheyLookLike) {
   std::mt19937 random(6);
   for (int trial = 0; trial < 200; ++trial) {
     // Corners named twice: a wedge (edges 3 on 2, 7 on 6), a pyramid (the top in one point), a tetrahedron.
-    for (const auto& [same, expected] : std::vector<std::pair<std::array<std::size_t, 8>, double>>{
-             {{0, 1, 2, 2, 4, 5, 6, 6}, 0.5},
-             {{0, 1, 2, 3, 4, 4, 4, 4}, 1.0 / 3.0},
-             {{0, 1, 3, 3, 4, 4, 4, 4}, 1.0 / 6.0}}) {
+    for (const auto& [same, expected] :
+         std::vector<std::pair<std::array<std::size_t, 8>, double>>{{{0, 1, 2, 2, 4, 5, 6, 6}, 0.5},
+                                                                    {{0, 1, 2, 3, 4, 4, 4, 4}, 1.0 / 3.0},
+                                                                    {{0, 1, 3, 3, 4, 4, 4, 4}, 1.0 / 6.0}}) {
       const std::vector<Vec3> c = cube_corners();
       Cells cells;
       std::vector<Vec3> corners;
