@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <memory>
 
 #include "core/parallel.h"
+#include "render/cpu/cell_bins.h"
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/cpu/cell_projection_tile.h"
 #include "render/cpu/map_intervals.h"
@@ -17,6 +19,12 @@ namespace atomesh {
 namespace {
 
 using namespace cell_projection;
+
+// Faces whose depth changes by more than so many of the sample's radii across a tile have their coefficients split.
+constexpr double plain_radii = 8.0;
+
+// A thread sets up at most so many cells of a tile at once, unless a single block has more.
+constexpr std::size_t cells_at_once = 4096;
 
 double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -42,16 +50,32 @@ View make_view(const Scene& scene, const Camera& camera) {
   // Cells of a lattice that share a circumsphere have equal powers but for rounding; a little of the centroid's
   // distance brings them into an order that is seldom wrong.
   view.order_blend = scene.delaunay ? 0.02 : 1.0;
+  // Rounding moves a face by at most a few 2^-24 of this: about a millionth of the sample's radius.
+  view.plain_reach = static_cast<float>(plain_radii * (view.perspective ? radius / view.reference : radius));
   return view;
 }
 
-class Drawing {
+// Blocks of a tile: columns and rows of them, ends not included.
+struct BlockRegion {
+  int left, right, top, bottom;
+
+  BlockSet blocks() const {
+    BlockSet row = 0;
+    for (int b = left; b < right; ++b) row |= BlockSet{1} << b;
+    BlockSet set = 0;
+    for (int b = top; b < bottom; ++b) set |= row << (blocks_per_side * b);
+    return set;
+  }
+};
+
+class CellProjectionFrame final : public Frame {
  public:
-  Drawing(const Scene& scene, const Camera& camera, const Parameters& parameters)
-      : scene_(scene), camera_(camera), parameters_(parameters), view_(make_view(scene, camera)), kernel_(kernel()) {
+  CellProjectionFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+                      const Progress& progress)
+      : scene_(scene), camera_(camera), window_(window), view_(make_view(scene, camera)), kernel_(kernel()) {
     const bool layered = scene.mode == Mode::volume_surface;
-    alpha_length_ = layered ? parameters.volume_surface.alpha_length : parameters.volume.alpha_length;
-    optics_.alpha_length = static_cast<float>(alpha_length_);
+    const double alpha_length = layered ? parameters.volume_surface.alpha_length : parameters.volume.alpha_length;
+    optics_.alpha_length = static_cast<float>(alpha_length);
     optics_.samples = parameters.integrator == Integrator::sampled ? parameters.samples_per_cell : 0;
     if (!layered) {
       intervals_ = MapIntervals(parameters.volume.color_map);
@@ -61,43 +85,52 @@ class Drawing {
     } else if (parameters.volume_surface.face_alpha > 0.0 && !scene.surface.empty()) {
       optics_.layer_alpha = static_cast<float>(parameters.volume_surface.face_alpha);
     }
-  }
-
-  void set_up(const Progress& progress) {
-    vertices_ = project_vertices(scene_.vertices, scene_.center, camera_);
-    const auto box = [this](std::size_t cell) { return visible(cell) ? box_of(static_cast<Index>(cell)) : PixelBox{}; };
-    bins_ = bin_to_tiles(scene_.tetrahedra.size(), camera_.width, camera_.height, tile_side, box, progress);
+    if (window.width < 1 || window.height < 1) return;
+    grid_ = TileGrid(window);
+    if (scene.tetrahedra.empty()) return;
+    vertices_ = project_vertices(scene.vertices, scene.center, camera);
+    const bool all_visible = alpha_length > 0.0 && all_opaque();
+    bins_ = CellBins(alpha_length > 0.0 ? scene.tetrahedra.size() : 0, grid_, progress, [&](std::size_t cell) {
+      const PixelBox box = box_of(static_cast<Index>(cell));
+      return box.empty() || all_visible || visible(cell) ? box : PixelBox{};
+    });
     if (optics_.layer_alpha > 0.0F) {
-      layers_ = std::make_unique<SurfaceLayers>(scene_, camera_, parameters_, view_, vertices_, progress);
+      layers_ = std::make_unique<SurfaceLayers>(scene, camera, parameters, view_, vertices_, grid_, progress);
       optics_.layer = layers_->shader();
     }
   }
 
-  Image draw(std::uint64_t& steps, Progress& progress) const {
-    Image image(camera_.width, camera_.height);
-    TilePool pool;
-    std::atomic<std::uint64_t> all_steps{0};
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels&,
+            Progress& progress) const override {
+    const auto start = std::chrono::steady_clock::now();
+    std::atomic<std::uint64_t> steps{0};
     std::atomic<std::size_t> done{0};
-    parallel_for(bins_.tiles(), 1, [&](std::size_t tile, std::size_t) {
+    parallel_for(grid_.tiles(), 1, [&](std::size_t tile, std::size_t) {
       progress.check();
-      if (!bins_.of(tile).empty() || (layers_ && layers_->any_in(tile))) {
-        std::unique_ptr<Tile> cells = pool.take();
-        all_steps += draw_tile(tile, *cells, image, progress);
-        pool.give_back(std::move(cells));
+      clear_tile(tile, lattice, image);
+      if (bins_.any_in(tile) || (layers_ && layers_->any_in(tile))) {
+        std::unique_ptr<Tile> cells = pool_.take();
+        steps += draw_tile(tile, lattice, *cells, image, progress);
+        pool_.give_back(std::move(cells));
       }
       const std::size_t finished = ++done;
       // The listener belongs to the thread that called us.
       if (omp_get_thread_num() == 0)
-        progress.update(static_cast<double>(finished) / static_cast<double>(bins_.tiles()));
+        progress.update(static_cast<double>(finished) / static_cast<double>(grid_.tiles()));
     });
     progress.update(1.0);
-    steps += all_steps;
-    return image;
+    stats.steps += steps;
+    stats.render_ms += ms_since(start);
   }
 
  private:
+  // Whether no cell can be invisible.
+  bool all_opaque() const {
+    if (scene_.mode == Mode::volume) return !intervals_.any_transparent();
+    return std::none_of(scene_.colors.begin(), scene_.colors.end(), [](const Vec4f& color) { return color.a <= 0.0F; });
+  }
+
   bool visible(std::size_t cell) const {
-    if (!(alpha_length_ > 0.0)) return false;
     const Tetrahedron& corners = scene_.tetrahedra[cell];
     if (scene_.mode == Mode::volume_surface) {
       return std::any_of(corners.begin(), corners.end(), [this](Index v) { return scene_.colors[v].a > 0.0F; });
@@ -107,26 +140,116 @@ class Drawing {
                                    std::max({scalar(0), scalar(1), scalar(2), scalar(3)}));
   }
 
-  PixelBox box_of(Index cell) const {
-    return pixel_box(vertices_, scene_.tetrahedra[cell], camera_.width, camera_.height);
+  bool behind(const Tetrahedron& corners) const {
+    return std::any_of(corners.begin(), corners.end(), [this](Index v) { return vertices_.behind[v] != 0; });
   }
 
-  std::uint64_t draw_tile(std::size_t number, Tile& tile, Image& image, const Progress& progress) const {
-    const auto [first_column, last_column, first_row, last_row] =
-        bins_.pixels_of(number, camera_.width, camera_.height);
-    set_up_tile(bins_.of(number), first_column, first_row, tile);
-    tile.list_blocks();
+  PixelBox box_of(Index cell) const {
+    const Tetrahedron& corners = scene_.tetrahedra[cell];
+    return behind(corners) ? clipped_box(vertices_, corners, camera_)
+                           : pixel_box(vertices_, corners, camera_.width, camera_.height);
+  }
+
+  // Calls visit(pixel's place in the image, column, row of the lattice's grid) for the lattice's pixels of a region
+  // that lie in the window.
+  template <class Visit>
+  void for_pixels(std::size_t tile, const PixelLattice& lattice, const BlockRegion& region, Visit&& visit) const {
+    const int left = grid_.pixel_column(tile) + lattice.column_phase - window_.left;
+    const int top = grid_.pixel_row(tile) + lattice.row_phase - window_.top;
+    for (int j = region.top * block_side; j < region.bottom * block_side; ++j) {
+      const int row = top + j * lattice.row_stride;
+      if (row < 0 || row >= window_.height) continue;
+      for (int i = region.left * block_side; i < region.right * block_side; ++i) {
+        const int column = left + i * lattice.column_stride;
+        if (column < 0 || column >= window_.width) continue;
+        visit(
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(window_.width) + static_cast<std::size_t>(column),
+            i, j);
+      }
+    }
+  }
+
+  static BlockRegion all_blocks(const PixelLattice& lattice) {
+    return {0, blocks_per_side / lattice.column_stride, 0, blocks_per_side / lattice.row_stride};
+  }
+
+  void clear_tile(std::size_t tile, const PixelLattice& lattice, Image& image) const {
+    for_pixels(tile, lattice, all_blocks(lattice),
+               [&](std::size_t place, int, int) { image.pixels[place] = Vec4f(0.0F); });
+  }
+
+  std::uint64_t draw_tile(std::size_t number, const PixelLattice& lattice, Tile& tile, Image& image,
+                          const Progress& progress) const {
     tile.layers.clear();
-    if (layers_) layers_->find(number, tile.layers);
+    if (layers_) layers_->find(number, lattice, tile.layers);
+    std::vector<Index> cells;
+    bins_.gather(number, cells);
+    const BlockRegion region = all_blocks(lattice);
+    if (lattice.column_stride > 1 || lattice.row_stride > 1) keep_cells_of(number, lattice, region, cells);
+    return draw_region(number, lattice, region, cells, tile, image, progress);
+  }
+
+  // Leaves out the cells that lie beside all of the region's pixels.
+  void keep_cells_of(std::size_t tile, const PixelLattice& lattice, const BlockRegion& region,
+                     std::vector<Index>& cells) const {
+    const int left = grid_.pixel_column(tile) + lattice.column_phase;
+    const int top = grid_.pixel_row(tile) + lattice.row_phase;
+    // Whether there is a pixel begin + n · stride, n from 0 on, at most `end`, from first to last.
+    const auto meets = [](int first, int last, int begin, int end, int stride) {
+      const int next = first <= begin ? begin : begin + (first - begin + stride - 1) / stride * stride;
+      return next <= std::min(last, end);
+    };
+    std::erase_if(cells, [&](Index cell) {
+      const Tetrahedron& corners = scene_.tetrahedra[cell];
+      if (behind(corners)) return false;
+      const PixelBox box = pixel_box(vertices_, corners, camera_.width, camera_.height);
+      const int column_step = block_side * lattice.column_stride;
+      const int row_step = block_side * lattice.row_stride;
+      return !meets(box.first_column, box.last_column, left + region.left * column_step,
+                    left + region.right * column_step - 1, lattice.column_stride) ||
+             !meets(box.first_row, box.last_row, top + region.top * row_step, top + region.bottom * row_step - 1,
+                    lattice.row_stride);
+    });
+  }
+
+  // Cells that are too many at once are drawn in parts of the tile.
+  std::uint64_t draw_region(std::size_t number, const PixelLattice& lattice, const BlockRegion& region,
+                            const std::vector<Index>& cells, Tile& tile, Image& image, const Progress& progress) const {
+    const int columns = region.right - region.left;
+    const int rows = region.bottom - region.top;
+    if (cells.size() <= cells_at_once || columns * rows == 1) {
+      set_up_tile(number, lattice, region, cells, tile);
+      return draw_blocks(number, lattice, region, tile, image, progress);
+    }
+    BlockRegion parts[2] = {region, region};
+    if (columns >= rows) {
+      parts[0].right = parts[1].left = region.left + columns / 2;
+    } else {
+      parts[0].bottom = parts[1].top = region.top + rows / 2;
+    }
+    std::uint64_t steps = 0;
+    for (const BlockRegion& part : parts) {
+      std::vector<Index> kept = cells;
+      keep_cells_of(number, lattice, part, kept);
+      steps += draw_region(number, lattice, part, kept, tile, image, progress);
+    }
+    return steps;
+  }
+
+  std::uint64_t draw_blocks(std::size_t number, const PixelLattice& lattice, const BlockRegion& region, Tile& tile,
+                            Image& image, const Progress& progress) const {
+    tile.list_blocks();
     const BlockScratch scratch = tile.scratch();
     std::uint64_t steps = 0;
-    for (int b = 0; b < blocks_per_tile; ++b) {
+    for (BlockSet rest = region.blocks(); rest != 0; rest &= rest - 1) {
+      const int b = std::countr_zero(rest);
       const std::span<const std::uint32_t> cells = tile.cells_of(b);
       const bool layered = tile.layers.any_in(b);
       if (cells.empty() && !layered) continue;
       progress.check();
       BlockInput block{};
       block.planes = tile.planes.data();
+      block.refinements = tile.refinements.data();
       block.colors = tile.colors.data();
       block.ranges = tile.ranges.data();
       block.scalars = tile.scalars.data();
@@ -136,21 +259,23 @@ class Drawing {
       block.layer_begin = layered ? tile.layers.begin_of(b) : nullptr;
       block.column = b % blocks_per_side * block_side;
       block.row = b / blocks_per_side * block_side;
-      block.tile_column = first_column;
-      block.tile_row = first_row;
+      block.tile_column = grid_.pixel_column(number);
+      block.tile_row = grid_.pixel_row(number);
+      block.lattice = lattice;
       float rgba[4 * block_pixels];
       steps += kernel_.draw_block(view_, optics_, block, scratch, rgba);
-      for (int i = 0; i < block_pixels; ++i) {
-        const int column = first_column + block.column + i % block_side;
-        const int row = first_row + block.row + i / block_side;
-        if (column > last_column || row > last_row) continue;
-        image.at(column, row) = {rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2], rgba[4 * i + 3]};
-      }
+      const int column = b % blocks_per_side;
+      const int row = b / blocks_per_side;
+      for_pixels(number, lattice, {column, column + 1, row, row + 1}, [&](std::size_t place, int i, int j) {
+        const float* from = rgba + 4 * (j % block_side * block_side + i % block_side);
+        image.pixels[place] = {from[0], from[1], from[2], from[3]};
+      });
     }
     return steps;
   }
 
-  void set_up_tile(std::span<const Index> cells, int first_column, int first_row, Tile& tile) const {
+  void set_up_tile(std::size_t number, const PixelLattice& lattice, const BlockRegion& region,
+                   const std::vector<Index>& cells, Tile& tile) const {
     const bool layered = scene_.mode == Mode::volume_surface;
     const SetupOutput output = tile.resize(cells.size(), layered);
     SetupInput input{};
@@ -160,8 +285,10 @@ class Drawing {
     input.value_count = layered ? 4 : 1;
     input.cells = cells.data();
     input.count = cells.size();
-    input.column = first_column;
-    input.row = first_row;
+    input.column = grid_.pixel_column(number);
+    input.row = grid_.pixel_row(number);
+    input.lattice = lattice;
+    input.wanted = region.blocks();
     kernel_.setup(view_, input, output);
     if (layered) return;
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -174,30 +301,27 @@ class Drawing {
 
   const Scene& scene_;
   const Camera& camera_;
-  const Parameters& parameters_;
-  View view_;
+  const PixelWindow window_;
+  const View view_;
   const Kernel& kernel_;
-  double alpha_length_ = 0.0;
   MapIntervals intervals_;
   CellOptics optics_{};
+  TileGrid grid_;
   ProjectedVertices vertices_;
-  TileBins bins_;
+  CellBins bins_;
   std::unique_ptr<SurfaceLayers> layers_;  // none where no layer is drawn
+  mutable TilePool pool_;
 };
 
 }  // namespace
 
-Image draw_cell_projection(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                           Progress& progress) {
-  if (scene.tetrahedra.empty()) return Image(camera.width, camera.height);
+std::unique_ptr<Frame> prepare_cell_projection(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                               const PixelWindow& window, RenderStats& stats,
+                                               const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  Drawing drawing(scene, camera, parameters);
-  drawing.set_up(progress);
+  auto frame = std::make_unique<CellProjectionFrame>(scene, camera, parameters, window, progress);
   stats.setup_ms += ms_since(start);
-  const auto drawn = std::chrono::steady_clock::now();
-  Image image = drawing.draw(stats.steps, progress);
-  stats.render_ms += ms_since(drawn);
-  return image;
+  return frame;
 }
 
 }  // namespace atomesh

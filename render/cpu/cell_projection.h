@@ -2,15 +2,19 @@
 // each intersected with sixteen rays at a time, ordered per block of 4×4 pixels and composed front to back.
 //
 // Any set of cells that do not overlap is drawn right, cyclic ones included; where cells overlap, the one whose entry
-// is nearer comes first. Rays pass 6e-5 of a pixel beside the pixel's centre (cell_projection_kernel.h says why): next
-// to an exact picture a pixel is off by that share of its difference to its neighbours, beside the rounding of float.
-// The surface's layers, which are either met or not, are met by the rays of mode surface, 4e-9 of a pixel beside.
-// Memory beyond the scene: 33 bytes a vertex, 4 bytes for each tile of 32×32 pixels that a cell touches, in mode
-// volume_surface as much for each that a surface triangle touches, and for each thread what its tile needs.
+// is nearer comes first. Rays pass 6e-8 of a pixel beside the pixel's centre (cell_projection_kernel.h says why). The
+// surface's layers, which are either met or not, are met by the rays of mode surface, 4e-9 of a pixel beside.
+//
+// Memory beyond the scene. For the frame: 33 bytes a vertex (6 bytes a tetrahedron of a Delaunay mesh), 4 bytes for
+// each tile of 32×32 pixels that a cell touches (of small cells 4 to 8 bytes a tetrahedron), in mode volume_surface as
+// much for each that a surface triangle touches, 512 bytes a tile; while it is prepared 12 bytes for each cell of a
+// part of the mesh that a thread is at (at most 1/64 of it, or 4096 cells). For each thread that draws: about 500 bytes
+// for each of the cells that are set up at once, 4096 of them or as many as one block of 4×4 pixels has.
 #pragma once
 
+#include <memory>
+
 #include "core/camera.h"
-#include "core/image.h"
 #include "core/parameters.h"
 #include "core/progress.h"
 #include "render/renderer.h"
@@ -18,9 +22,9 @@
 
 namespace atomesh {
 
-// Modes volume_surface and volume (Scene::mode says which), integrated exactly or by samples as `parameters` says.
-// Premultiplied RGB and coverage. The picture does not depend on the number of threads.
-Image draw_cell_projection(const Scene& scene, const Camera& camera, const Parameters& parameters, RenderStats& stats,
-                           Progress& progress);
+// Modes volume_surface and volume (Scene::mode says which), integrated as `parameters` say. Vertices are projected and
+// cells sorted into the tiles under the window here, once for all drawing. No channels. Throws CancelledError.
+std::unique_ptr<Frame> prepare_cell_projection(const Scene& scene, const Camera& camera, const Parameters& parameters,
+                                               const PixelWindow& window, RenderStats& stats, const Progress& progress);
 
 }  // namespace atomesh

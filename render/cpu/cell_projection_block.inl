@@ -3,14 +3,18 @@
 
 namespace atomesh::ATOMESH_ISA {
 
-// Keeps `order`, the block's cells so far, sorted so that on every ray nearer segments stand before farther ones.
+// Of two cells that a ray meets, that which begins first comes first; of two that begin at the same depth, that of the
+// lower record.
+//
+// Keeps `order`, the block's cells so far, sorted so that on every ray they stand in this order.
 class Order {
  public:
   // Adds the cell `added`, of which there are that many already, with its depths in the scratch, and which meets the
   // rays `lanes`; if there are none, the next one takes its place. False when the cells overlap in a cycle, so that no
   // order is right for all of the block's rays; the cell is then last.
   bool add(const BlockScratch& scratch, std::uint32_t added, const Lanes& u_in, const Mask& lanes) {
-    const Mask wrong = lanes & (u_in < last_);
+    // Where two begin at the same depth, it takes a closer look.
+    const Mask wrong = lanes & !(u_in > last_);
     last_ = select(lanes, max(u_in, last_), last_);
     scratch.order[added] = added;
     return !any(wrong) || move_forward(scratch, added, u_in, lanes, bits(wrong));
@@ -21,15 +25,20 @@ class Order {
   // one that must) move behind it in their present order; the others keep their place.
   static __attribute__((noinline)) bool move_forward(const BlockScratch& scratch, std::uint32_t added, Lanes u_in,
                                                      Mask lanes, unsigned unsettled) {
+    const std::uint32_t record = scratch.record[added];
     std::uint32_t first = added;
     for (std::uint32_t at = added; at-- > 0 && unsettled != 0;) {
       const std::uint32_t other = scratch.order[at];
       const unsigned shared = scratch.lanes[other] & unsettled;
       if (shared == 0) continue;
-      const unsigned farther = bits(load(scratch.u_in + 16 * other) > u_in) & shared;
+      const Lanes other_in = load(scratch.u_in + 16 * other);
+      const unsigned farther = bits(scratch.record[other] > record ? !(other_in < u_in) : other_in > u_in) & shared;
       if (farther != 0) first = at;
       unsettled &= ~(shared & ~farther);  // on these rays all that stand before are nearer still
     }
+    if (first == added) return true;
+    // Cells that begin where a moved one does are moved too, whether they must or not: at worst an order that there is
+    // is not found.
     Lanes nearest_moved = select(lanes, u_in, Lanes(3e38F));
     std::uint32_t kept = first;
     std::uint32_t moved = 0;
@@ -38,8 +47,8 @@ class Order {
       const std::uint32_t other = scratch.order[at];
       const Mask other_lanes = mask_of(scratch.lanes[other]);
       const Lanes other_in = load(scratch.u_in + 16 * other);
-      if (any(other_lanes & (other_in > nearest_moved))) {
-        cyclic |= any(other_lanes & lanes & (other_in < u_in));
+      if (any(other_lanes & !(other_in < nearest_moved))) {
+        cyclic |= any(other_lanes & lanes & (scratch.record[other] > record ? other_in < u_in : !(other_in > u_in)));
         nearest_moved = select(other_lanes, min(other_in, nearest_moved), nearest_moved);
         scratch.moved[moved++] = other;
       } else {
@@ -54,42 +63,68 @@ class Order {
   Lanes last_{-3e38F};
 };
 
-// Every cell's light on its own, composed ray by ray in the ray's own order: right for any set of cells.
+// Rays that let next to nothing through are finished: what lies behind adds nothing to them, whenever it comes.
+static inline void finish_opaque(Light& light) {
+  light.through = select(light.through > Lanes(opaque_enough), light.through, Lanes(0.0F));
+}
+
+// Lays one cell behind what is in `light`, and the layers before it.
 template <class Integrator>
-static __attribute__((noinline)) void compose_ray_by_ray(const Integrator& integrator, Layers& layers,
-                                                         const BlockScratch& scratch, std::uint32_t count,
-                                                         float* rgba) {
-  for (std::uint32_t n = 0; n < count; ++n) {
-    Light light;
-    integrator.compose(scratch.record[n], load(scratch.u_in + 16 * n), load(scratch.u_out + 16 * n), light);
-    store(scratch.light + 64 * n, light.red);
-    store(scratch.light + 64 * n + 16, light.green);
-    store(scratch.light + 64 * n + 32, light.blue);
-    store(scratch.light + 64 * n + 48, light.through);
-  }
+static inline void compose(const Integrator& integrator, Layers& layers, std::uint32_t record, const Lanes& u_in,
+                           const Lanes& u_out, unsigned lanes, Light& light) {
+  layers.lay_before(u_in, u_out, lanes, light);
+  finish_opaque(light);
+  integrator.compose(record, u_in, u_out, light);
+  finish_opaque(light);
+}
+
+// Cells that overlap in a cycle: each ray's in the ray's own order, those that are next on several rays at once.
+// Returns the steps.
+template <class Integrator>
+static __attribute__((noinline)) std::uint64_t compose_cyclic(const Integrator& integrator, Layers& layers,
+                                                              const BlockScratch& scratch, std::uint32_t count,
+                                                              Light& result) {
+  std::uint32_t end[lane_count];
+  std::uint32_t next[lane_count];
   for (std::uint32_t lane = 0; lane < lane_count; ++lane) {
+    std::uint32_t* const list = scratch.by_ray + lane * count;
     std::uint32_t met = 0;
     for (std::uint32_t n = 0; n < count; ++n) {
       if ((scratch.lanes[n] >> lane & 1) == 0) continue;
       const float depth = scratch.u_in[16 * n + lane];
       std::uint32_t at = met++;
-      for (; at > 0 && scratch.u_in[16 * scratch.order[at - 1] + lane] > depth; --at) {
-        scratch.order[at] = scratch.order[at - 1];
+      for (; at > 0; --at) {
+        const std::uint32_t before = list[at - 1];
+        const float other = scratch.u_in[16 * before + lane];
+        if (other < depth || (other == depth && scratch.record[before] < scratch.record[n])) break;
+        list[at] = before;
       }
-      scratch.order[at] = n;
+      list[at] = n;
     }
-    float sum[4] = {0.0F, 0.0F, 0.0F, 1.0F};
-    for (std::uint32_t i = 0; i < met; ++i) {
-      const std::uint32_t at = 16 * scratch.order[i] + lane;
-      layers.lay_before(scratch.u_in[at], scratch.u_out[at], static_cast<int>(lane), sum);
-      const float* light = scratch.light + 64 * scratch.order[i] + lane;
-      for (int k = 0; k < 3; ++k) sum[k] += sum[3] * light[16 * k];
-      sum[3] *= light[48];
-    }
-    layers.lay_rest(static_cast<int>(lane), sum);
-    for (int k = 0; k < 3; ++k) rgba[4 * lane + k] = sum[k];
-    rgba[4 * lane + 3] = 1.0F - sum[3];
+    next[lane] = lane * count;
+    end[lane] = next[lane] + met;
   }
+  Light light = result;
+  std::uint64_t steps = 0;
+  for (std::uint32_t first = 0; first < lane_count;) {
+    if (next[first] == end[first]) {
+      ++first;
+      continue;
+    }
+    const std::uint32_t n = scratch.by_ray[next[first]];
+    unsigned lanes = 0;
+    for (std::uint32_t lane = first; lane < lane_count; ++lane) {
+      if (next[lane] == end[lane] || scratch.by_ray[next[lane]] != n) continue;
+      lanes |= 1U << lane;
+      ++next[lane];
+    }
+    const Lanes u_in = load(scratch.u_in + 16 * n);
+    const Lanes u_out = select(mask_of(lanes), load(scratch.u_out + 16 * n), min(u_in, load(scratch.u_out + 16 * n)));
+    compose(integrator, layers, scratch.record[n], u_in, u_out, lanes, light);
+    steps += static_cast<unsigned>(__builtin_popcount(lanes));
+  }
+  result = light;
+  return steps;
 }
 
 // A block's cells lie scattered over its tile's records: their cache lines are asked for a few cells ahead.
@@ -103,20 +138,44 @@ static inline void prefetch(const Record& record) {
 }
 
 // Where a cell begins and ends on the block's rays: on those that meet it, u_in < u_out.
-static inline void cross(const CellPlanes& p, const Pixels& pixels, const Lanes& nearest, const Lanes& farthest,
-                         Lanes& u_in, Lanes& u_out) {
-  const Lanes u0 = affine(pixels, p.a[0], p.b[0], p.c[0]);
-  const Lanes u1 = affine(pixels, p.a[1], p.b[1], p.c[1]);
-  const Lanes u2 = affine(pixels, p.a[2], p.b[2], p.c[2]);
-  const Lanes u3 = affine(pixels, p.a[3], p.b[3], p.c[3]);
-  const Lanes enters1(p.enters[0]);
-  const Lanes enters2(p.enters[1]);
-  u_in = max(max(nearest, u0), max(min(u1, enters1), min(u2, enters2)));
-  u_out = min(min(farthest, u3), min(max(u1, enters1), max(u2, enters2)));
-  if (p.eye_inside != 0) {
-    u_in = nearest;
-    u_out = min(u0, u_out);
+static inline void clip(const Lanes* u, const Lanes& enters1, const Lanes& enters2, const Lanes& nearest,
+                        const Lanes& farthest, Lanes& u_in, Lanes& u_out) {
+  u_in = max(max(nearest, u[0]), max(min(u[1], enters1), min(u[2], enters2)));
+  u_out = min(min(farthest, u[3]), min(max(u[1], enters1), max(u[2], enters2)));
+}
+
+// Of a cell that has a refinement.
+struct Crossing {
+  Lanes u_in, u_out;
+};
+static __attribute__((noinline, flatten)) Crossing cross_refined(const CellPlanes& p, const CellRefinement& r,
+                                                                 const Pixels& pixels, Lanes nearest, Lanes farthest) {
+  Lanes u[4];
+  for (int k = 0; k < 4; ++k) {
+    u[k] = affine(pixels, p.a[k], p.b[k], p.c[k]) + affine(pixels, r.a[k], r.b[k], r.c[k]);
   }
+  Crossing crossing;
+  clip(u, Lanes(p.enters[0]), Lanes(p.enters[1]), nearest, farthest, crossing.u_in, crossing.u_out);
+  if (r.eye_inside != 0) {
+    crossing.u_in = nearest;
+    crossing.u_out = min(u[0], crossing.u_out);
+  }
+  return crossing;
+}
+
+static inline bool has_refinement(const CellPlanes& p) {
+  std::uint32_t far;
+  std::uint32_t plain;
+  __builtin_memcpy(&far, &p.enters[1], sizeof far);
+  __builtin_memcpy(&plain, &plain_far, sizeof plain);
+  return (far & 0x7FFFFFFFU) != plain;
+}
+
+// Lanes of the block within the cell's box: columns and rows as sets of the tile's.
+static inline unsigned in_box(const CellPlanes& p, int column, int row) {
+  constexpr std::uint16_t spread[16] = {0x0000, 0x000F, 0x00F0, 0x00FF, 0x0F00, 0x0F0F, 0x0FF0, 0x0FFF,
+                                        0xF000, 0xF00F, 0xF0F0, 0xF0FF, 0xFF00, 0xFF0F, 0xFFF0, 0xFFFF};
+  return ((p.columns >> column) & 15U) * 0x1111U & spread[(p.rows >> row) & 15U];
 }
 
 // Notes the cells that meet a ray of the block, and their order. False when they overlap in a cycle.
@@ -129,22 +188,34 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
   const Lanes farthest(view.farthest);
   const std::uint32_t* const cells = block.cells;
   const CellPlanes* const planes = block.planes;
+  const CellRefinement* const refinements = block.refinements;
   const std::size_t cell_count = block.count;
+  const int column = block.column;
+  const int row = block.row;
   Order order;
   bool sorted = true;
   std::uint32_t count = 0;
   for (std::size_t n = 0; n < cell_count; ++n) {
     const std::uint32_t record = cells[n];
     if (n + planes_ahead < cell_count) prefetch(planes[cells[n + planes_ahead]]);
+    const CellPlanes& p = planes[record];
     Lanes u_in;
     Lanes u_out;
-    cross(planes[record], pixels, nearest, farthest, u_in, u_out);
-    const Mask lanes = u_in < u_out;
+    if (has_refinement(p)) {
+      const Crossing crossing = cross_refined(p, refinements[record], pixels, nearest, farthest);
+      u_in = crossing.u_in;
+      u_out = crossing.u_out;
+    } else {
+      const Lanes u[4] = {affine(pixels, p.a[0], p.b[0], p.c[0]), affine(pixels, p.a[1], p.b[1], p.c[1]),
+                          affine(pixels, p.a[2], p.b[2], p.c[2]), affine(pixels, p.a[3], p.b[3], p.c[3])};
+      clip(u, Lanes(p.enters[0]), Lanes(p.enters[1]), nearest, farthest, u_in, u_out);
+    }
+    const Mask lanes = mask_of(in_box(p, column, row)) & (u_in < u_out);
     const unsigned met = bits(lanes);
     // Which cells meet a ray follows no pattern that a branch could learn: every cell is noted, and those that meet
     // none are overwritten by the next.
     store(scratch.u_in + 16 * count, u_in);
-    store(scratch.u_out + 16 * count, u_out);
+    store(scratch.u_out + 16 * count, select(lanes, u_out, min(u_in, u_out)));
     scratch.lanes[count] = static_cast<std::uint16_t>(met);
     scratch.record[count] = record;
     if (sorted) sorted = order.add(scratch, count, u_in, lanes);
@@ -158,11 +229,12 @@ template <class Integrator>
 static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, const CellOptics& optics,
                                                               const BlockInput& block, const BlockScratch& scratch,
                                                               float* rgba) {
+  const PixelLattice& lattice = block.lattice;
   float columns[lane_count];
   float rows[lane_count];
   for (int i = 0; i < lane_count; ++i) {
-    columns[i] = static_cast<float>(block.column + i % block_side);
-    rows[i] = static_cast<float>(block.row + i / block_side);
+    columns[i] = static_cast<float>(lattice.column_phase + (block.column + i % block_side) * lattice.column_stride);
+    rows[i] = static_cast<float>(lattice.row_phase + (block.row + i / block_side) * lattice.row_stride);
   }
   const Pixels pixels{load(columns), load(rows)};
   std::uint32_t count = 0;
@@ -171,24 +243,22 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   const Integrator integrator(view, optics, block, pixels);
   Layers layers(optics, block);
   std::uint64_t steps = 0;
-  if (!sorted) {
-    for (std::uint32_t n = 0; n < count; ++n) steps += static_cast<unsigned>(__builtin_popcount(scratch.lanes[n]));
-    compose_ray_by_ray(integrator, layers, scratch, count, rgba);
-    return steps;
-  }
   Light light;
-  for (std::uint32_t n = 0; n < count; ++n) {
-    const std::uint32_t next = scratch.order[n];
-    const unsigned lanes = scratch.lanes[next];
-    if (n + values_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[n + values_ahead]]));
-    steps += static_cast<unsigned>(__builtin_popcount(lanes));
-    const Lanes u_in = load(scratch.u_in + 16 * next);
-    const Lanes u_out = load(scratch.u_out + 16 * next);
-    layers.lay_before(u_in, u_out, lanes, light);
-    integrator.compose(scratch.record[next], u_in, u_out, light);
-    if (!any(light.through > Lanes(opaque_enough))) break;
+  if (!sorted) {
+    steps = compose_cyclic(integrator, layers, scratch, count, light);
+  } else {
+    for (std::uint32_t n = 0; n < count; ++n) {
+      const std::uint32_t next = scratch.order[n];
+      const unsigned lanes = scratch.lanes[next];
+      if (n + values_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[n + values_ahead]]));
+      steps += static_cast<unsigned>(__builtin_popcount(lanes));
+      compose(integrator, layers, scratch.record[next], load(scratch.u_in + 16 * next), load(scratch.u_out + 16 * next),
+              lanes, light);
+      if (!any(light.through > Lanes(0.0F))) break;
+    }
   }
   layers.lay_rest(light);
+  finish_opaque(light);
   alignas(64) float channels[4][lane_count];
   store(channels[0], light.red);
   store(channels[1], light.green);

@@ -29,24 +29,34 @@ constexpr FacePairs face_pairs[5] = {{I4{0, 0, 0, 0}, I4{0, 1, 2, 3}},
 // Sixteen blocks of a tile, two rows of them, as lanes: which of the tile's blocks a cell may cover.
 class BlockTest {
  public:
-  BlockTest() {
+  explicit BlockTest(const PixelLattice& lattice) {
     static_assert(blocks_per_side == 8 && lane_count == 16);
-    float column[lane_count];
-    for (int i = 0; i < lane_count; ++i) column[i] = static_cast<float>(i % blocks_per_side * block_side) + middle;
-    column_ = load(column);
+    // Middle of a block's pixels, from its first, and how far they are apart.
+    constexpr float middle = 0.5F * (block_side - 1);
+    const auto column_stride = static_cast<float>(lattice.column_stride);
+    const auto row_stride = static_cast<float>(lattice.row_stride);
+    half_width_ = middle * column_stride;
+    half_height_ = middle * row_stride;
+    float place[lane_count];
+    for (int i = 0; i < lane_count; ++i) {
+      place[i] = static_cast<float>(lattice.column_phase) +
+                 column_stride * (static_cast<float>(i % blocks_per_side * block_side) + middle);
+    }
+    column_ = load(place);
     for (int group = 0; group < groups; ++group) {
-      float row[lane_count];
       for (int i = 0; i < lane_count; ++i) {
-        row[i] = static_cast<float>((2 * group + i / blocks_per_side) * block_side) + middle;
+        const int row = 2 * group + i / blocks_per_side;
+        place[i] = static_cast<float>(lattice.row_phase) + row_stride * (static_cast<float>(row * block_side) + middle);
       }
-      row_[group] = load(row);
+      row_[group] = load(place);
     }
   }
 
   // A ray meets the cell where each face it leaves by is farther than each it enters by. Along a face's outline that is
   // a straight line, and a block on the wrong side of one of the lines is not met. Faces first those entered by, of
   // which there are `entries`, 1 to 3. What rounding may hide is added, here and where the rays are intersected.
-  BlockSet blocks(const F4& a, const F4& b, const F4& c, int entries) const {
+  // Of the blocks `candidates`.
+  BlockSet blocks(const F4& a, const F4& b, const F4& c, int entries, BlockSet candidates) const {
     const FacePairs& pairs = face_pairs[entries];
     const F4 slope_a = __builtin_shuffle(a, pairs.out) - __builtin_shuffle(a, pairs.in);
     const F4 slope_b = __builtin_shuffle(b, pairs.out) - __builtin_shuffle(b, pairs.in);
@@ -54,7 +64,7 @@ class BlockTest {
         magnitude(a) * static_cast<float>(tile_side) + magnitude(b) * static_cast<float>(tile_side) + magnitude(c);
     const F4 rounding = 1e-6F * (__builtin_shuffle(reach, pairs.out) + __builtin_shuffle(reach, pairs.in));
     const F4 offset = __builtin_shuffle(c, pairs.out) - __builtin_shuffle(c, pairs.in) + rounding +
-                      middle * (magnitude(slope_a) + magnitude(slope_b));
+                      half_width_ * magnitude(slope_a) + half_height_ * magnitude(slope_b);
     Lanes along[4];
     Lanes down[4];
     for (int k = 0; k < 4; ++k) {
@@ -63,19 +73,20 @@ class BlockTest {
     }
     BlockSet set = 0;
     for (int group = 0; group < groups; ++group) {
+      if ((candidates >> (lane_count * group) & 0xFFFFU) == 0) continue;
       const Lanes least =
           min(min(multiply_add(down[0], row_[group], along[0]), multiply_add(down[1], row_[group], along[1])),
               min(multiply_add(down[2], row_[group], along[2]), multiply_add(down[3], row_[group], along[3])));
       const Mask met = least > Lanes(0.0F);
       set |= static_cast<BlockSet>(bits(met)) << (lane_count * group);
     }
-    return set;
+    return set & candidates;
   }
 
  private:
   static constexpr int groups = blocks_per_tile / lane_count;
-  static constexpr float middle = 0.5F * (block_side - 1);  // of a block's pixels, from its first
 
+  float half_width_, half_height_;  // of a block
   Lanes column_;
   Lanes row_[groups];
 };

@@ -6,6 +6,14 @@
 // z_ref the depth of the sample's centre, so that floats resolve what matters. A face's three coefficients come from
 // its corners in ascending order of vertex index, so both cells at a face compute bit-identical depths of it: where one
 // cell ends the next begins, no ray misses or doubles a cell, and lengths along a ray telescope.
+//
+// The coefficients are floats about the tile's first pixel. Of a face seen so nearly edge-on that their rounding would
+// move it noticeably, they are split in two floats, the first parts so short that they add up without rounding: such a
+// face's place in the picture is right to 2^-36 of a pixel or so.
+//
+// What a pixel gets depends on the pixel alone, not on the others of its block: a cell meets the rays within its box
+// where its faces say so, a ray's cells are ordered by where they begin and, of those that begin at the same depth, by
+// their number, and every lane computes what it would compute alone.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +21,7 @@
 #include <string_view>
 
 #include "core/geometry.h"
+#include "render/pixel_lattice.h"
 
 namespace atomesh::cell_projection {
 
@@ -24,10 +33,10 @@ inline constexpr int block_pixels = block_side * block_side;
 
 // Rays pass this much of a pixel right of the pixel's centre, and ray_lift of that above it: then no ray of a picture
 // aligned with a crystal runs in a lattice plane or along a row of edges, where rounding would decide cell by cell.
-inline constexpr double ray_shift = 0x1p-14;
+inline constexpr double ray_shift = 0x1p-24;
 inline constexpr double ray_lift = 0.15;
 
-// A block of pixels is finished when no ray of it lets more light through than this.
+// A ray that lets no more light through than this is finished.
 inline constexpr float opaque_enough = 0x1p-18F;
 
 // MapIntervals::grid() has so many places for the scalars from 0 to 1.
@@ -42,15 +51,30 @@ struct View {
   float nearest;       // u of the eye's plane, where a ray that starts inside begins
   float farthest;      // u no plane lies behind
   double order_blend;  // 0: cells in order of their circumsphere's power (Delaunay); 1: of their centroid
+  float plain_reach;   // faces whose u(i, j) in a tile reach beyond this have their coefficients split
 };
+
+// The lattice's pixels of a tile are a grid of their own: its pixel (i, j) is the tile's (column_phase + i ·
+// column_stride, row_phase + j · row_stride). Blocks are 4×4 of the grid's pixels; block b is in column b % 8, row b
+// / 8.
 
 // A cell's four faces as affine functions u(i, j) = a i + b j + c of the pixel within the tile: first those the ray
 // enters by, then those it leaves by. The first is one it enters by and the last one it leaves by; `enters` says of the
-// second and the third. One cache line.
+// second and the third: +far where the ray enters by the face, -far where it leaves by it, far being plain_far where
+// the planes are all there is to know, refined_far where there is a CellRefinement. One cache line.
+inline constexpr float plain_far = 3e38F;
+inline constexpr float refined_far = 1e38F;
 struct alignas(64) CellPlanes {
   float a[4], b[4], c[4];
-  float enters[2];           // +3e38 where the ray enters by the face, -3e38 where it leaves by it
-  std::uint32_t eye_inside;  // 1 where the ray enters by none of the four
+  float enters[2];
+  std::uint32_t columns;  // of the lattice's grid, that the cell's corners lie between; bit i is column i
+  std::uint32_t rows;
+};
+
+// What is seldom needed: second parts of the planes' coefficients, and whether the ray enters by none of the faces.
+struct alignas(64) CellRefinement {
+  float a[4], b[4], c[4];
+  std::uint32_t eye_inside;
 };
 
 // Blocks of a tile: bit b is block b, rows first.
@@ -121,15 +145,18 @@ struct SetupInput {
   const Index* cells;      // of the tile
   std::size_t count;
   int column, row;  // the tile's first pixel
+  PixelLattice lattice;
+  BlockSet wanted;  // the blocks that cells are wanted for
 };
 
 struct SetupOutput {
   CellPlanes* planes;
-  CellColors* colors;  // these two where values are RGBA
+  CellRefinement* refinements;  // where the planes say that there is one
+  CellColors* colors;           // these two where values are RGBA
   ColorRange* ranges;
   CellScalar* scalars;  // this where they are scalars, all but its intervals
   double* keys;         // ascending: front to back
-  BlockSet* blocks;     // that the cell may cover a pixel of; where there are none the other records are not filled
+  BlockSet* blocks;  // wanted ones that the cell may cover a pixel of; where there are none the others are not filled
   std::uint32_t* per_block;  // how many cells each of the tile's blocks has
 };
 
@@ -141,11 +168,12 @@ struct BlockScratch {
   std::uint32_t* record;  // per cell: which of the block's cells it is
   std::uint32_t* order;   // per cell
   std::uint32_t* moved;   // per cell
-  float* light;           // 64 per cell, used where cells overlap in a cycle
+  std::uint32_t* by_ray;  // 16 per cell, used where cells overlap in a cycle
 };
 
 struct BlockInput {
   const CellPlanes* planes;  // of the tile
+  const CellRefinement* refinements;
   const CellColors* colors;
   const ColorRange* ranges;
   const CellScalar* scalars;
@@ -153,8 +181,9 @@ struct BlockInput {
   std::size_t count;
   const LayerHit* layers;  // of the tile; those of the block's ray i: layer_begin[i] … layer_begin[i + 1] - 1,
   const std::uint32_t* layer_begin;  // nearest first. nullptr where no ray of the block has one
-  int column, row;                   // the block's first pixel, within the tile
+  int column, row;                   // the block's first pixel, within the lattice's grid
   int tile_column, tile_row;         // the tile's first pixel
+  PixelLattice lattice;
 };
 
 struct Kernel {

@@ -23,10 +23,6 @@ class Layers {
     if (block_.layers != nullptr) lay_up_to(Lanes(none), (1U << lane_count) - 1, light);
   }
 
-  // The same on one ray; light as premultiplied RGB and what still gets through.
-  void lay_before(float u_in, float u_out, int lane, float* light) { lay_up_to(u_in + u_out, lane, light); }
-  void lay_rest(int lane, float* light) { lay_up_to(none, lane, light); }
-
  private:
   static constexpr float none = 3e38F;
 
@@ -52,21 +48,14 @@ class Layers {
     return light;
   }
 
-  void lay_up_to(float twice_u, int lane, float* light) {
-    while (next_[lane] < twice_u) {
-      float color[3];
-      take(lane, color);
-      const float taken = light[3] * optics_.layer_alpha;
-      for (int k = 0; k < 3; ++k) light[k] += taken * color[k];
-      light[3] -= taken;
-    }
-  }
-
   // The colour of the next one, which is then no longer to come.
   void take(int lane, float* color) {
-    optics_.layer.shade(optics_.layer.context, block_.layers[at_[lane]++],
-                        block_.tile_column + block_.column + lane % block_side,
-                        block_.tile_row + block_.row + lane / block_side, color);
+    optics_.layer.shade(
+        optics_.layer.context, block_.layers[at_[lane]++],
+        block_.tile_column + block_.lattice.column_phase +
+            (block_.column + lane % block_side) * block_.lattice.column_stride,
+        block_.tile_row + block_.lattice.row_phase + (block_.row + lane / block_side) * block_.lattice.row_stride,
+        color);
     find_next(lane);
   }
 

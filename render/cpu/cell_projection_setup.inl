@@ -83,12 +83,15 @@ struct CellGroup {
   Ints odd;  // all bits where that order is an odd permutation of the cell's own
   Doubles x[4], y[4], z[4];
   Doubles nx[4], ny[4], nz[4];                                    // of the faces' planes, from their corners in order
-  Floats a[4], b[4], c[4];                                        // the planes as u(i, j)
+  Doubles a[4], b[4], c[4];                                       // the planes as u(i, j)
   F4 cell_a[group_size], cell_b[group_size], cell_c[group_size];  // the same, cell by cell
   Ints entries;                                                   // bit k: the ray enters by face k
+  Ints steep;                                                     // bit k: of face k the coefficients are split
+  Ints first_column, last_column, first_row, last_row;            // of the lattice's grid, between the corners
 };
 
-static inline void transpose(const Floats* faces, F4* cells) {
+static inline void transpose(const Doubles* doubles, F4* cells) {
+  const Floats faces[4] = {to_floats(doubles[0]), to_floats(doubles[1]), to_floats(doubles[2]), to_floats(doubles[3])};
   for (int part = 0; part < group_size; part += 4) {
     F4 row[4];
     for (int k = 0; k < 4; ++k) {
@@ -189,9 +192,11 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   // Far beyond any depth, and nowhere near where floats end when it is multiplied.
   const Doubles limit = zero + 1e20;
   const Doubles scale = largest > limit ? limit / largest : zero + 1.0;
-  g.a[k] = to_floats(a * scale);
-  g.b[k] = to_floats(b * scale);
-  g.c[k] = to_floats(c * scale);
+  g.a[k] = a * scale;
+  g.b[k] = b * scale;
+  g.c[k] = c * scale;
+  const Doubles reach = (tile_side * (abs_a + abs_b) + abs_c) * scale;
+  g.steep |= __builtin_convertvector(reach > zero + view.plain_reach, Ints) & (1 << k);
 
   // The ray enters by the faces whose outward normal looks back at it. Which way is outward follows from the order of
   // the corners alone, so that the cells at a face never disagree.
@@ -200,22 +205,131 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   g.entries |= (back ^ inward) & (1 << k);
 }
 
+// The lattice's pixels between the corners, those within a thousandth of a pixel included; all where a corner is not
+// before the eye.
+static inline void find_box(const View& view, const PixelLattice& lattice, double x0, double y0, CellGroup& g) {
+  const Doubles zero{};
+  const Doubles one = zero + 1.0;
+  const double margin = 0x1p-10;
+  const double per_pixel = 1.0 / view.pixel;
+  Doubles left, right, top, bottom;
+  Ints behind{};
+  for (int k = 0; k < 4; ++k) {
+    behind |= __builtin_convertvector(g.z[k] <= zero, Ints);
+    const Doubles scale = view.perspective ? 1.0 / g.z[k] : one;
+    const Doubles column = (g.x[k] * scale - x0) * per_pixel;
+    const Doubles row = (y0 - g.y[k] * scale) * per_pixel;
+    left = k == 0 ? column : (column < left ? column : left);
+    right = k == 0 ? column : (column > right ? column : right);
+    top = k == 0 ? row : (row < top ? row : top);
+    bottom = k == 0 ? row : (row > bottom ? row : bottom);
+  }
+  if (!view.perspective) behind = Ints{};
+  const auto first = [&](const Doubles& from, int phase, int stride) {
+    const Doubles place = (from - (margin + phase)) * (1.0 / stride);
+    const double beyond = tile_side;
+    const Doubles inside = place > zero ? (place < beyond ? place : zero + beyond) : zero;
+    const Ints whole = __builtin_convertvector(inside, Ints);
+    return (whole - __builtin_convertvector(__builtin_convertvector(whole, Doubles) < inside, Ints)) & ~behind;
+  };
+  const auto last = [&](const Doubles& to, int phase, int stride) {
+    const Doubles place = (to + (margin - phase)) * (1.0 / stride) + 1.0;
+    const double end = static_cast<double>(tile_side / stride);
+    const Doubles inside = place > zero ? (place < end ? place : zero + end) : zero;
+    return ((__builtin_convertvector(inside, Ints) & ~behind) | (tile_side / stride & behind)) - 1;
+  };
+  g.first_column = first(left, lattice.column_phase, lattice.column_stride);
+  g.last_column = last(right, lattice.column_phase, lattice.column_stride);
+  g.first_row = first(top, lattice.row_phase, lattice.row_stride);
+  g.last_row = last(bottom, lattice.row_phase, lattice.row_stride);
+}
+
+// Bits first … last.
+static inline std::uint32_t bits_between(std::int32_t first, std::int32_t last) {
+  return (2U << last) - (1U << first);
+}
+
+// Of each set of rows of blocks, all blocks of the first column.
+struct RowSpread {
+  BlockSet rows[1 << blocks_per_side];
+};
+constexpr RowSpread make_row_spread() {
+  RowSpread spread{};
+  for (unsigned set = 0; set < 1U << blocks_per_side; ++set) {
+    for (int row = 0; row < blocks_per_side; ++row) {
+      spread.rows[set] |= static_cast<BlockSet>(set >> row & 1) << (blocks_per_side * row);
+    }
+  }
+  return spread;
+}
+constexpr RowSpread row_spread = make_row_spread();
+
+// u(i, j) = (a i + b j + c) + (rest): the first part in multiples of so large a number that floats lose nothing of it
+// anywhere in the tile.
+static inline void split_plane(double a, double b, double c, float* first, float* rest) {
+  const double reach = (tile_side - 1) * ((a < 0.0 ? -a : a) + (b < 0.0 ? -b : b)) + (c < 0.0 ? -c : c);
+  std::uint64_t exponent;
+  __builtin_memcpy(&exponent, &reach, sizeof exponent);
+  // Adding 1.5 · 2^52 such multiples, of which the reach has 2^22 to 2^23, rounds to a multiple.
+  const std::uint64_t rounder_bits = ((exponent >> 52) + 30) << 52 | std::uint64_t{1} << 51;
+  double rounder;
+  __builtin_memcpy(&rounder, &rounder_bits, sizeof rounder);
+  const double whole[3] = {a, b, c};
+  for (int i = 0; i < 3; ++i) {
+    const double rounded = (whole[i] + rounder) - rounder;
+    first[i] = static_cast<float>(rounded);
+    rest[i] = static_cast<float>(whole[i] - rounded);
+  }
+}
+
 // Cell l's planes as the kernel wants them, and its blocks.
-static inline BlockSet write_planes(const CellGroup& g, int l, const BlockTest& test, CellPlanes& plane) {
+static inline BlockSet write_planes(const CellGroup& g, int l, const BlockTest& test, BlockSet wanted,
+                                    CellPlanes& plane, CellRefinement& refinement) {
   const auto entries = static_cast<unsigned>(g.entries[l]);
   if (entries == 15U) return 0;  // turned over by rounding
+  const int left = g.first_column[l];
+  const int right = g.last_column[l];
+  const int top = g.first_row[l];
+  const int bottom = g.last_row[l];
+  if (left > right || top > bottom) return 0;
+  const BlockSet between = bits_between(left / block_side, right / block_side) *
+                               row_spread.rows[bits_between(top / block_side, bottom / block_side)] &
+                           wanted;
+  if (between == 0) return 0;
   const I4 list = face_lists.list[entries];
   const F4 a = __builtin_shuffle(g.cell_a[l], list);
   const F4 b = __builtin_shuffle(g.cell_b[l], list);
   const F4 c = __builtin_shuffle(g.cell_c[l], list);
   const int entry_count = __builtin_popcount(entries);
+  const BlockSet blocks = entries == 0 ? between : test.blocks(a, b, c, entry_count, between);
+  if (blocks == 0) return 0;
   store4(plane.a, a);
   store4(plane.b, b);
   store4(plane.c, c);
-  plane.enters[0] = entry_count >= 2 ? 3e38F : -3e38F;
-  plane.enters[1] = entry_count >= 3 ? 3e38F : -3e38F;
-  plane.eye_inside = entry_count == 0 ? 1 : 0;
-  return entries == 0 ? ~BlockSet{0} : test.blocks(a, b, c, entry_count);
+  plane.columns = bits_between(left, right);
+  plane.rows = bits_between(top, bottom);
+  const bool refined = g.steep[l] != 0 || entries == 0;
+  const float far = refined ? refined_far : plain_far;
+  plane.enters[0] = entry_count >= 2 ? far : -far;
+  plane.enters[1] = entry_count >= 3 ? far : -far;
+  if (refined) {
+    refinement = {};
+    refinement.eye_inside = entries == 0 ? 1 : 0;
+    for (int n = 0; n < 4; ++n) {
+      const int k = list[n];
+      if ((g.steep[l] >> k & 1) == 0) continue;
+      float first[3];
+      float rest[3];
+      split_plane(g.a[k][l], g.b[k][l], g.c[k][l], first, rest);
+      plane.a[n] = first[0];
+      plane.b[n] = first[1];
+      plane.c[n] = first[2];
+      refinement.a[n] = rest[0];
+      refinement.b[n] = rest[1];
+      refinement.c[n] = rest[2];
+    }
+  }
+  return blocks;
 }
 
 // What values at the corners become values along the rays by.
@@ -308,13 +422,15 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
   const double x0 = view.left + view.pixel * input.column;
   const double y0 = view.top - view.pixel * input.row;
   const double keep = 1.0 - view.order_blend;
-  const BlockTest test;
+  const BlockTest test(input.lattice);
   CellGroup g;
   CellSlopes s;
   for (std::size_t first = 0; first < input.count; first += group_size) {
     prefetch_groups(input, first);
     load_group(input, first, g);
     g.entries = Ints{};
+    g.steep = Ints{};
+    find_box(view, input.lattice, x0, y0, g);
     for (int k = 0; k < 4; ++k) find_planes(view, x0, y0, k, g);
     transpose(g.a, g.cell_a);
     transpose(g.b, g.cell_b);
@@ -360,7 +476,7 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
     for (int l = 0; l < count; ++l) {
       const std::size_t n = first + static_cast<std::size_t>(l);
       output.keys[n] = keys[l];
-      output.blocks[n] = write_planes(g, l, test, output.planes[n]);
+      output.blocks[n] = write_planes(g, l, test, input.wanted, output.planes[n], output.refinements[n]);
       if (input.value_count == 4 && output.blocks[n] != 0) {
         write_colors(view, input, x0, y0, g, s, l, output.colors[n], output.ranges[n]);
       }

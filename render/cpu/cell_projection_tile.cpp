@@ -13,12 +13,14 @@ SetupOutput Tile::resize(std::size_t count, bool colored) {
   };
   count_ = count;
   grow(planes, count);
+  grow(refinements, count);
   grow(keys, count);
   grow(blocks, count);
   grow(colors, colored ? count : 0);
   grow(ranges, colored ? count : 0);
   grow(scalars, colored ? 0 : count);
-  return {planes.data(), colors.data(), ranges.data(), scalars.data(), keys.data(), blocks.data(), per_block_.data()};
+  return {planes.data(),  refinements.data(), colors.data(), ranges.data(),
+          scalars.data(), keys.data(),        blocks.data(), per_block_.data()};
 }
 
 // Keys are resolved to 2^-32 of their range: a radix sort of three digits.
@@ -71,8 +73,8 @@ BlockScratch Tile::scratch() {
   for (std::size_t b = 0; b + 1 < begin_.size(); ++b)
     longest = std::max<std::size_t>(longest, begin_[b + 1] - begin_[b]);
   if (lanes_.size() < longest) {
-    floats_.resize(longest * (block_pixels * (1 + 1 + 4)));
-    numbers_.resize(longest * 3);
+    floats_.resize(longest * (block_pixels * 2));
+    numbers_.resize(longest * (3 + block_pixels));
     lanes_.resize(longest);
   }
   float* floats = floats_.data();
@@ -83,7 +85,7 @@ BlockScratch Tile::scratch() {
           numbers,
           numbers + longest,
           numbers + 2 * longest,
-          floats + 2 * longest * block_pixels};
+          numbers + 3 * longest};
 }
 
 std::unique_ptr<Tile> TilePool::take() {

@@ -20,7 +20,9 @@ class Tile {
   // Records for `count` cells with RGBA or with a scalar, to be filled by Kernel::setup().
   SetupOutput resize(std::size_t count, bool colored);
 
+  std::vector<Index> cells;  // of the tile
   std::vector<CellPlanes> planes;
+  std::vector<CellRefinement> refinements;
   std::vector<CellColors> colors;
   std::vector<ColorRange> ranges;
   std::vector<CellScalar> scalars;

@@ -3,7 +3,6 @@
 #include "render/cpu/atom_balls.h"
 #include "render/cpu/cell_projection.h"
 #include "render/cpu/surface_modes.h"
-#include "render/cpu/whole_picture_frame.h"
 
 namespace atomesh {
 
@@ -27,10 +26,7 @@ class CpuRenderer final : public Renderer {
       case Mode::volume:
         break;
     }
-    return std::make_unique<WholePictureFrame>(
-        window, [&scene, &camera, &parameters](RenderStats& drawn, const Channels&, Progress& following) {
-          return draw_cell_projection(scene, camera, parameters, drawn, following);
-        });
+    return prepare_cell_projection(scene, camera, parameters, window, stats, progress);
   }
 };
 

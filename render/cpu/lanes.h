@@ -24,6 +24,7 @@ inline constexpr int lane_count = 16;
 struct Mask {
   __mmask16 m;
   friend Mask operator&(Mask a, Mask b) { return {static_cast<__mmask16>(a.m & b.m)}; }
+  friend Mask operator!(Mask a) { return {static_cast<__mmask16>(~a.m)}; }
 };
 struct Lanes {
   __m512 v;
@@ -75,6 +76,11 @@ struct Mask {
   friend Mask operator&(Mask a, Mask b) {
     Mask r;
     for (int i = 0; i < parts; ++i) r.m[i] = a.m[i] & b.m[i];
+    return r;
+  }
+  friend Mask operator!(const Mask& a) {
+    Mask r;
+    for (int i = 0; i < parts; ++i) r.m[i] = ~a.m[i];
     return r;
   }
 };

@@ -26,6 +26,8 @@ class MapIntervals {
     while (n + 1 < intervals_.size() && scalar >= intervals_[n + 1].begin) ++n;
     return static_cast<std::uint16_t>(n);
   }
+  // Whether some intervals have no opacity throughout.
+  bool any_transparent() const { return opaque_before_.back() != static_cast<int>(intervals_.size()); }
   // Whether no scalar from `low` to `high` has any opacity.
   bool transparent(float low, float high) const {
     return opaque_before_[std::size_t{find(high)} + 1] == opaque_before_[find(low)];

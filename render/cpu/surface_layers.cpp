@@ -54,33 +54,42 @@ void TileLayers::sort() {
 }
 
 SurfaceLayers::SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view,
-                             const ProjectedVertices& vertices, const Progress& progress)
+                             const ProjectedVertices& vertices, const TileGrid& grid, const Progress& progress)
     : scene_(scene),
       camera_(camera),
       view_(view),
       vertices_(vertices),
       shader_(scene, camera, parameters),
-      margin_(0x1p-20 * scene.bounds.diagonal()) {
+      margin_(0x1p-20 * scene.bounds.diagonal()),
+      grid_(grid) {
   const bool perspective = camera.projection == Projection::perspective;
+  const int left = grid.first_column * tile_side;
+  const int top = grid.first_row * tile_side;
+  const int width = grid.columns * tile_side;
+  const int height = grid.rows * tile_side;
   const auto box = [&](std::size_t t) {
     const Triangle& corners = scene.surface[t];
     if (turned_away(vertices, corners, perspective)) return PixelBox{};
-    return pixel_box(vertices, corners, camera.width, camera.height);
+    const PixelBox whole = pixel_box(vertices, corners, camera.width, camera.height);
+    return PixelBox{std::max(whole.first_column - left, 0), std::min(whole.last_column - left, width - 1),
+                    std::max(whole.first_row - top, 0), std::min(whole.last_row - top, height - 1)};
   };
-  bins_ = bin_to_tiles(scene.surface.size(), camera.width, camera.height, tile_side, box, progress);
+  bins_ = bin_to_tiles(scene.surface.size(), width, height, tile_side, box, progress);
 }
 
-void SurfaceLayers::find(std::size_t tile, TileLayers& layers) const {
+void SurfaceLayers::find(std::size_t tile, const PixelLattice& lattice, TileLayers& layers) const {
   layers.clear();
-  const PixelBox pixels = bins_.pixels_of(tile, camera_.width, camera_.height);
-  cross_triangles(scene_.surface, camera_, vertices_, bins_.of(tile), pixels, PixelLattice{},
-                  [&](int column, int row, Index triangle, const TriangleRaster& raster, const Crossing& crossing) {
-                    if (!crossing.entering) return;
-                    const double beside =
-                        raster.plane_depth(view_.left + view_.pixel * column, view_.top - view_.pixel * row);
-                    layers.add(column - pixels.first_column, row - pixels.first_row,
-                               {crossing.depth, place(crossing.depth, beside), triangle});
-                  });
+  const int left = grid_.pixel_column(tile);
+  const int top = grid_.pixel_row(tile);
+  const PixelBox pixels{left, left + tile_side - 1, top, top + tile_side - 1};
+  const LatticeGrid rays(lattice, left, left + tile_side, top, top + tile_side);
+  cross_triangles(
+      scene_.surface, camera_, vertices_, bins_.of(tile), pixels, lattice,
+      [&](int column, int row, Index triangle, const TriangleRaster& raster, const Crossing& crossing) {
+        if (!crossing.entering) return;
+        const double beside = raster.plane_depth(view_.left + view_.pixel * column, view_.top - view_.pixel * row);
+        layers.add(rays.i_of(column), rays.j_of(row), {crossing.depth, place(crossing.depth, beside), triangle});
+      });
   layers.sort();
 }
 

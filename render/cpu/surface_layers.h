@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/cpu/cell_bins.h"
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/cpu/surface_shader.h"
 #include "render/cpu/tile_bins.h"
@@ -17,7 +18,7 @@ namespace atomesh::cell_projection {
 class TileLayers {
  public:
   void clear();
-  // Triangles ascending. Pixel within the tile.
+  // Triangles ascending. Pixel of the lattice's grid in the tile.
   void add(int column, int row, const LayerHit& hit);
   // Puts what was added under its rays, nearest first; of two at the same depth the triangle added first.
   void sort();
@@ -41,11 +42,11 @@ class SurfaceLayers {
  public:
   // Keeps references. Throws CancelledError.
   SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view,
-                const ProjectedVertices& vertices, const Progress& progress);
+                const ProjectedVertices& vertices, const TileGrid& grid, const Progress& progress);
 
   bool any_in(std::size_t tile) const { return !bins_.of(tile).empty(); }
-  // The hits in front of the eye.
-  void find(std::size_t tile, TileLayers& layers) const;
+  // The hits in front of the eye, of the lattice's pixels.
+  void find(std::size_t tile, const PixelLattice& lattice, TileLayers& layers) const;
   Shader shader() const { return {shade, this}; }
 
  private:
@@ -60,6 +61,7 @@ class SurfaceLayers {
   const ProjectedVertices& vertices_;
   SurfaceShader shader_;
   double margin_;  // Å
+  TileGrid grid_;
   TileBins bins_;  // of the surface's triangles, without those that surely no ray enters by
 };
 
