@@ -76,7 +76,8 @@ class CellProjectionFrame final : public Frame {
     const bool layered = scene.mode == Mode::volume_surface;
     const double alpha_length = layered ? parameters.volume_surface.alpha_length : parameters.volume.alpha_length;
     optics_.alpha_length = static_cast<float>(alpha_length);
-    optics_.samples = parameters.integrator == Integrator::sampled ? parameters.samples_per_cell : 0;
+    optics_.integrator = parameters.integrator;
+    optics_.samples = parameters.samples_per_cell;
     if (!layered) {
       intervals_ = MapIntervals(parameters.volume.color_map);
       optics_.map = intervals_.data();

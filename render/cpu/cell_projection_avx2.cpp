@@ -10,6 +10,10 @@
 // clang-format off
 #include "render/cpu/cell_projection_blocks.inl"
 #include "render/cpu/cell_projection_setup.inl"
+#include "render/cpu/cell_projection_light.inl"
+#include "render/cpu/cell_projection_segment.inl"
+#include "render/cpu/cell_projection_colors.inl"
+#include "render/cpu/cell_projection_mapped.inl"
 #include "render/cpu/cell_projection_integrate.inl"
 #include "render/cpu/cell_projection_layers.inl"
 #include "render/cpu/cell_projection_block.inl"

@@ -263,7 +263,7 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   store(channels[0], light.red);
   store(channels[1], light.green);
   store(channels[2], light.blue);
-  store(channels[3], Lanes(1.0F) - light.through);
+  store(channels[3], light.covered);
   for (int i = 0; i < lane_count; ++i) {
     for (int k = 0; k < 4; ++k) rgba[4 * i + k] = channels[k][i];
   }
@@ -272,8 +272,9 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
 
 static std::uint64_t draw_block(const View& view, const CellOptics& optics, const BlockInput& block,
                                 const BlockScratch& scratch, float* rgba) {
-  return optics.map == nullptr ? draw_block_with<ColorIntegrator>(view, optics, block, scratch, rgba)
-                               : draw_block_with<ScalarIntegrator>(view, optics, block, scratch, rgba);
+  return with_integrator(optics, [&](auto chosen) {
+    return draw_block_with<typename decltype(chosen)::type>(view, optics, block, scratch, rgba);
+  });
 }
 
 }  // namespace atomesh::ATOMESH_ISA

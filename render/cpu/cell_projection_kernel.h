@@ -1,5 +1,6 @@
 // What the driver of cell projection and its kernels hand each other: plain structs, no classes. A kernel is one source
-// (cell_projection_blocks.inl, _setup.inl, _integrate.inl, _layers.inl, _block.inl) compiled once per instruction set.
+// (cell_projection_blocks.inl, _setup.inl, _light.inl, _segment.inl, _colors.inl, _mapped.inl, _integrate.inl,
+// _layers.inl, _block.inl) compiled once per instruction set.
 //
 // Depth along a ray is carried as u, affine in the pixel for every plane and growing with depth z:
 //   perspective u = 1 - z_ref / z  (planes project so that 1/z is affine),   parallel u = z - z_ref,
@@ -21,6 +22,7 @@
 #include <string_view>
 
 #include "core/geometry.h"
+#include "core/parameters.h"
 #include "render/pixel_lattice.h"
 
 namespace atomesh::cell_projection {
@@ -96,20 +98,22 @@ struct ColorRange {
   float low[4], high[4];
 };
 
-// One scalar.
+// One scalar; `base` is counted from `reference`.
 struct alignas(64) CellScalar {
   float base_a, base_b, base_c;
   float slope_a, slope_b, slope_c;
   float depth;  // z_cell - z_ref
   float low, high;
+  float reference;               // the mean of the vertices'
   std::uint16_t first_interval;  // of the colour map, that the cell's scalars touch
   std::uint16_t last_interval;
 };
 
-// A linear piece of the colour map: colour = first + (s - begin) · slope for begin <= s <= end. RGB, then opacity.
+// A linear piece of the colour map: colour = first + (s - begin) · slope from begin up to the next one's. RGB, then
+// opacity.
 struct MapInterval {
   float begin;
-  float end;
+  float begin_rest;  // what a float leaves of it
   float first[4];
   float slope[4];
 };
@@ -128,8 +132,9 @@ struct Shader {
 };
 
 struct CellOptics {
-  float alpha_length;             // 1/Å
-  int samples;                    // per cell; 0 integrates exactly
+  float alpha_length;  // 1/Å
+  Integrator integrator;
+  int samples;                    // per cell, of Integrator::sampled
   const MapInterval* map;         // mode volume; nullptr where vertices carry RGBA
   const std::uint16_t* map_grid;  // MapIntervals::grid()
   int map_intervals;

@@ -408,13 +408,15 @@ static inline void write_scalars(const View& view, const SetupInput& input, doub
   const Doubles h = view.perspective ? s.mz : Doubles{} + 1.0;
   const Floats base_a = to_floats(gx * (h * view.pixel));
   const Floats base_b = to_floats(gy * (h * -view.pixel));
-  const Floats base_c = to_floats(mean + gx * (h * x0 - s.mx) + gy * (h * y0 - s.my));
+  const Floats reference = to_floats(mean);
+  const Floats base_c = to_floats((mean - to_doubles(reference)) + gx * (h * x0 - s.mx) + gy * (h * y0 - s.my));
   const Floats slope_a = to_floats(gx * across);
   const Floats slope_b = to_floats(gy * -across);
   const Floats slope_c = to_floats(view.perspective ? gz + gx * x0 + gy * y0 : gz);
   const Floats depth = to_floats(s.mz - view.reference);
   for (int l = 0; l < count; ++l) {
-    scalars[l] = {base_a[l], base_b[l], base_c[l], slope_a[l], slope_b[l], slope_c[l], depth[l], low[l], high[l], 0, 0};
+    scalars[l] = {base_a[l], base_b[l], base_c[l], slope_a[l],   slope_b[l], slope_c[l],
+                  depth[l],  low[l],    high[l],   reference[l], 0,          0};
   }
 }
 

@@ -4,16 +4,16 @@ namespace atomesh::cell_projection {
 
 MapIntervals::MapIntervals(const ColorMap& map) {
   const std::vector<ColorMapEntry>& entries = map.entries;
-  const auto scalar = [&](std::size_t i) { return static_cast<float>(entries[i].scalar); };
   const Vec4f constant(0.0F);
-  // Scalars lie in [0,1]; the outer intervals reach beyond so that rounding stays inside.
-  if (scalar(0) > 0.0F) add(-1.0F, scalar(0), entries.front().color, constant);
+  // Scalars lie in [0,1]; the first interval reaches beyond so that rounding stays inside.
+  if (entries.front().scalar > 0.0) add(-1.0, entries.front().color, constant);
   for (std::size_t i = 0; i + 1 < entries.size(); ++i) {
-    const float width = scalar(i + 1) - scalar(i);
-    if (width > 0.0F)
-      add(scalar(i), scalar(i + 1), entries[i].color, (entries[i + 1].color - entries[i].color) / width);
+    const double width = entries[i + 1].scalar - entries[i].scalar;
+    if (!(width > 0.0)) continue;
+    const glm::dvec4 rise = glm::dvec4(entries[i + 1].color) - glm::dvec4(entries[i].color);
+    add(entries[i].scalar, entries[i].color, Vec4f(rise / width));
   }
-  add(scalar(entries.size() - 1), 2.0F, entries.back().color, constant);
+  add(entries.back().scalar, entries.back().color, constant);
   std::uint16_t n = 0;
   for (int place = 0; place < map_grid_size; ++place) {
     while (n + 1U < intervals_.size() && static_cast<float>(place) / map_grid_size >= intervals_[n + 1U].begin) ++n;
@@ -21,8 +21,9 @@ MapIntervals::MapIntervals(const ColorMap& map) {
   }
 }
 
-void MapIntervals::add(float begin, float end, const Vec4f& first, const Vec4f& slope) {
-  MapInterval interval{begin, end, {}, {}};
+void MapIntervals::add(double begin, const Vec4f& first, const Vec4f& slope) {
+  const auto rounded = static_cast<float>(begin);
+  MapInterval interval{rounded, static_cast<float>(begin - static_cast<double>(rounded)), {}, {}};
   for (int k = 0; k < 4; ++k) {
     interval.first[k] = first[k];
     interval.slope[k] = slope[k];

@@ -34,7 +34,7 @@ class MapIntervals {
   }
 
  private:
-  void add(float begin, float end, const Vec4f& first, const Vec4f& slope);
+  void add(double begin, const Vec4f& first, const Vec4f& slope);
 
   std::vector<MapInterval> intervals_;
   std::vector<std::uint16_t> grid_;

@@ -18,6 +18,9 @@ namespace atomesh::optics {
 // Largest mean optical depth integrate_piece() is made for.
 inline constexpr float piece_limit = 1.0F;
 
+// A segment that lets no more light through than this is not followed further.
+inline constexpr float nothing_left = 1e-7F;
+
 template <class F>
 struct Piece {
   F opacity;  // 1 - T1: weight of the first colour
@@ -97,7 +100,7 @@ inline SegmentLight integrate_segment(float density_near, float density_far) {
   const float half_difference = 0.5F * (density_far - density_near);
   SegmentLight sum{0.0F, 0.0F, 1.0F};
   float u = 0.0F;
-  while (u < 1.0F && sum.transmittance > 1e-7F) {
+  while (u < 1.0F && sum.transmittance > nothing_left) {
     const float density = density_near + 2.0F * half_difference * u;
     const float rest = 1.0F - u;
     float h = rest;
