@@ -263,7 +263,7 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   store(channels[0], light.red);
   store(channels[1], light.green);
   store(channels[2], light.blue);
-  store(channels[3], light.covered);
+  store(channels[3], min(light.covered, Lanes(1.0F)));
   for (int i = 0; i < lane_count; ++i) {
     for (int k = 0; k < 4; ++k) rgba[4 * i + k] = channels[k][i];
   }
