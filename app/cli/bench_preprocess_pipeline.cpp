@@ -162,7 +162,7 @@ void bench_pipeline(const PreprocessBench& bench) {
   seed.atoms = bench.options.atoms == 0 ? 0 : std::max<std::size_t>(bench.options.atoms, 20000);
   seed.repeats = bench.options.repeats;
   seed.warm_up = 0;
-  seed.pictures = false;
+  seed.modes.clear();
   if (bench.options.atoms > 0 && bench.options.atoms < 20000) seed.samples = {"nacl-cracked"};
   bench_seed_table(seed, bench.session, bench.result);
 }

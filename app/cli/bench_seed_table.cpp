@@ -20,7 +20,17 @@ namespace atomesh::cli {
 
 namespace {
 
-constexpr std::array<Mode, 5> modes{Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
+// A column of the seed's table: SampleInfo::seed_ms holds preprocessing, then these.
+struct Column {
+  Mode mode;
+  const char* heading;
+  double required;  // times faster; 0: nothing is
+};
+constexpr std::array<Column, 5> columns{{{Mode::volume_surface, "volume-surface", 10.0},
+                                         {Mode::volume, "volume", 0.0},
+                                         {Mode::surface, "surface", 0.0},
+                                         {Mode::xray, "xray", 20.0},
+                                         {Mode::atoms, "atoms (balls)", 0.0}}};
 
 // "123 (9,254; 75×)": ours, the seed's, and how many times faster.
 std::string cell(double ours, double seeds) {
@@ -65,10 +75,16 @@ std::vector<SampleInfo> chosen_samples(const std::vector<std::string>& names) {
 }
 
 void bench_seed_table(const SeedTableOptions& options, Session& session, BenchResult& result) {
-  std::vector<std::string> headings{"sample", "atoms", "tetrahedra", "preprocessing"};
-  if (options.pictures)
-    headings.insert(headings.end(), {"volume-surface", "volume", "surface", "xray", "atoms (balls)"});
+  const auto wanted = [&](const Column& column) {
+    return std::find(options.modes.begin(), options.modes.end(), column.mode) != options.modes.end();
+  };
+  std::vector<std::string> headings{"sample", "atoms", "tetrahedra"};
+  if (options.preprocessing) headings.emplace_back("preprocessing");
+  for (const Column& column : columns) {
+    if (wanted(column)) headings.emplace_back(column.heading);
+  }
   TextTable table(headings);
+  const bool seeds_size = options.width == 512 && options.height == 512;
   const Renderer& renderer = find_renderer("auto");
   const TemporaryFolder folder;
   const std::string atoms_file = folder.file("atoms.dat");
@@ -83,28 +99,33 @@ void bench_seed_table(const SeedTableOptions& options, Session& session, BenchRe
     }
     Material material;
     const Times preprocessing = measure(
-        options.repeats, session, name + ": preprocess",
+        options.preprocessing ? options.repeats : 1, session, name + ": preprocess",
         [&] {
           PipelineReport report;
           material = preprocess(atoms_file, {}, report, session.progress());
-          write_material(material_file, material, {}, session.progress());
+          if (options.preprocessing) write_material(material_file, material, {}, session.progress());
         },
-        options.warm_up);
+        options.preprocessing ? options.warm_up : 0);
     const std::size_t atoms = material.atoms.size();
-    std::vector<std::string> cells{name, grouped(atoms), grouped(material.mesh.tetrahedra.size()),
-                                   cell(preprocessing.median, sample.seed_ms[0])};
-    BenchRow preprocessing_row =
-        row(sample, atoms, "preprocess", Json::object({{"threads", threads()}}), preprocessing, sample.seed_ms[0]);
-    if (options.atoms == 0) {
-      preprocessing_row.requirements = {{"pipeline: times faster than the seed's preprocessing, table 5.1", 30.0, true,
-                                         sample.seed_ms[0] / preprocessing.median, "×"}};
+    std::vector<std::string> cells{name, grouped(atoms), grouped(material.mesh.tetrahedra.size())};
+    if (options.preprocessing) {
+      cells.push_back(cell(preprocessing.median, sample.seed_ms[0]));
+      BenchRow preprocessing_row =
+          row(sample, atoms, "preprocess", Json::object({{"threads", threads()}}), preprocessing, sample.seed_ms[0]);
+      if (options.atoms == 0) {
+        preprocessing_row.requirements = {{"pipeline: times faster than the seed's preprocessing, table 5.1", 30.0,
+                                           true, sample.seed_ms[0] / preprocessing.median, "×"}};
+      }
+      result.add(std::move(preprocessing_row));
     }
-    result.add(std::move(preprocessing_row));
 
-    for (std::size_t m = 0; options.pictures && m < modes.size(); ++m) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const Column& column = columns[c];
+      if (!wanted(column)) continue;
+      const double seed_ms = sample.seed_ms[c + 1];
       Parameters parameters;
-      parameters.mode = modes[m];
-      const std::string mode(mode_name(modes[m]));
+      parameters.mode = column.mode;
+      const std::string mode(mode_name(column.mode));
       const Times times = measure(
           options.repeats, session, name + ": " + mode,
           [&] {
@@ -114,28 +135,33 @@ void bench_seed_table(const SeedTableOptions& options, Session& session, BenchRe
             render(renderer, scene, camera, parameters, stats, {}, session.progress());
           },
           options.warm_up);
-      cells.push_back(cell(times.median, sample.seed_ms[m + 1]));
-      result.add(row(sample, atoms, mode,
-                     Json::object({{"threads", threads()},
-                                   {"renderer", renderer.name()},
-                                   {"size", Json::array({options.width, options.height})}}),
-                     times, sample.seed_ms[m + 1]));
+      cells.push_back(cell(times.median, seed_ms));
+      BenchRow picture_row = row(sample, atoms, mode,
+                                 Json::object({{"threads", threads()},
+                                               {"renderer", renderer.name()},
+                                               {"size", Json::array({options.width, options.height})}}),
+                                 times, seed_ms);
+      if (options.atoms == 0 && seeds_size && column.required > 0.0) {
+        picture_row.requirements = {{fmt::format("{}: times faster than the seed's, table 5.1", mode), column.required,
+                                     true, seed_ms / times.median, "×"}};
+      }
+      result.add(std::move(picture_row));
     }
     table.row(std::move(cells));
   }
 
   std::string caption = fmt::format(
       "Milliseconds (the seed's on a 3.2 GHz quad-core with a GTX 560; how many times faster). {} "
-      "{}. Commit {}. Preprocessing: .dat on disk to .crb on disk.",
+      "{}. Commit {}.{}",
       options.repeats > 1 || options.warm_up > 0
           ? fmt::format("Medians of {} runs after {} not counted.", options.repeats, options.warm_up)
           : "One run each.",
-      machine_name(), build_commit());
-  if (options.pictures) {
+      machine_name(), build_commit(), options.preprocessing ? " Preprocessing: .dat on disk to .crb on disk." : "");
+  if (!options.modes.empty()) {
     caption += fmt::format(" Pictures: {}x{} with renderer {}, material in memory to pixels.", options.width,
                            options.height, renderer.name());
   }
-  if (options.atoms != 0 || options.width != 512 || options.height != 512) {
+  if (options.atoms != 0 || !seeds_size) {
     caption += " Other sizes than the seed's were asked for: the ratios compare different amounts of work.";
   }
   result.tables.push_back({"The seed's table 5.1", std::move(table), std::move(caption)});
