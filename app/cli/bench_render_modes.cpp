@@ -6,26 +6,6 @@
 
 namespace atomesh::cli {
 
-namespace {
-
-// Every integrator in the volume modes, once in the others.
-std::vector<Parameters> settings_of(const Parameters& parameters) {
-  if (parameters.mode != Mode::volume && parameters.mode != Mode::volume_surface) return {parameters};
-  std::vector<Parameters> all;
-  for (const Integrator integrator : {Integrator::exact, Integrator::linear, Integrator::preintegrated}) {
-    all.push_back(parameters);
-    all.back().integrator = integrator;
-  }
-  for (const int samples : {1, 4, 16}) {
-    all.push_back(parameters);
-    all.back().integrator = Integrator::sampled;
-    all.back().samples_per_cell = samples;
-  }
-  return all;
-}
-
-}  // namespace
-
 void bench_render_modes(RenderBench& bench) {
   TextTable table({"case", "mode", "integrator", "ms", "prepare", "draw", "M steps", "M steps/s/core", "max error",
                    "RMS", "PSNR, dB"});
@@ -40,8 +20,9 @@ void bench_render_modes(RenderBench& bench) {
         const Parameters seen = data->seen(view, mode);
         const Scene scene = make_scene(data->material, seen, progress);
         const Camera camera = make_camera(seen, scene.bounds, bench.width(512), bench.height(512));
-        for (const Parameters& parameters : settings_of(seen)) {
-          const std::string integrator = settings_of(seen).size() > 1 ? integrator_text(parameters) : std::string();
+        for (const Parameters& parameters : integrator_settings(seen)) {
+          const bool cells = has_integrator(mode);
+          const std::string integrator = cells ? integrator_text(parameters) : "";
           const std::string what = std::string(mode_name(mode)) + (integrator.empty() ? "" : ": " + integrator);
           TimedPicture picture(scene, camera, parameters);
           picture.draw(bench.options.repeats, bench.session, label + ": " + what);
@@ -50,7 +31,6 @@ void bench_render_modes(RenderBench& bench) {
           BenchRow row = picture_row(label, what, picture_settings(parameters, view.name, camera), picture);
           set_error(row, error);
           bench.result.add(std::move(row));
-          const bool cells = mode == Mode::volume || mode == Mode::volume_surface;
           table.row({label, std::string(mode_name(mode)), integrator, milliseconds(picture.total().median),
                      milliseconds(picture.prepare().median), milliseconds(picture.pixels().median),
                      cells ? fmt::format("{:.2f}", 1e-6 * static_cast<double>(picture.steps())) : "",

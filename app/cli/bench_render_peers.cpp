@@ -48,10 +48,8 @@ class PeerTable {
     label_ = data.name + ", " + view.name;
 
     std::deque<Ours> ours;
-    for (const Integrator integrator :
-         {Integrator::exact, Integrator::linear, Integrator::preintegrated, Integrator::sampled}) {
-      Ours& one = ours.emplace_back(Ours{parameters, std::nullopt});
-      one.parameters.integrator = integrator;
+    for (const Parameters& setting : integrator_settings(parameters)) {
+      Ours& one = ours.emplace_back(Ours{setting, std::nullopt});
       one.picture.emplace(scene, camera, one.parameters);
       progress.stage(label_ + ": " + integrator_text(one.parameters));
       one.picture->draw(progress, false);
@@ -91,7 +89,7 @@ class PeerTable {
         "centres and hand over 8 bits.";
     if (!driver_.empty())
       caption += fmt::format(" OpenGL, which projected tetrahedra run on: {}, {}.", driver_, display_->name());
-    return {"VTK's volume mappers", std::move(table_), std::move(caption)};
+    return {"VTK's volume mappers", std::move(table_), std::move(caption), std::move(plots_)};
   }
 
  private:
@@ -112,6 +110,7 @@ class PeerTable {
     const auto is_default = [](const Ours& one) { return one.parameters.integrator == Parameters{}.integrator; };
     const Ours& standard = *std::find_if(ours.begin(), ours.end(), is_default);
     const double standard_ms = standard.picture->total().median;
+    Plot plot = empty_plot();
     std::deque<BenchRow> rows;
     std::size_t standard_row = 0;
     PictureError standard_error;
@@ -122,6 +121,10 @@ class PeerTable {
         standard_error = error;
       }
       const std::string name = "atomesh, " + integrator_text(one.parameters);
+      const bool sampled = one.parameters.integrator == Integrator::sampled;
+      plot.series[sampled ? 1 : 0].points.push_back(
+          {one.picture->total().median, error.max,
+           sampled ? std::to_string(one.parameters.samples_per_cell) : integrator_text(one.parameters)});
       BenchRow& row = rows.emplace_back(
           picture_row(label_, "volume: " + name, picture_settings(one.parameters, view_->name, camera), *one.picture));
       set_error(row, error);
@@ -144,6 +147,7 @@ class PeerTable {
       }
       if (peer.mapper == VtkMapper::projected_tetrahedra) projected_ms = times.median;
       const std::string name(vtk_mapper_name(peer.mapper));
+      plot.series.push_back({name, {{times.median, error.max}}, false});
       BenchRow& row = rows.emplace_back(
           BenchRow{"render", label_, "volume: " + name, peer_settings(camera, peer), "VTK", times, {}, {}, {}});
       row.more = {{"first_ms", peer.first.ms}, {"runs", peer.runs.size()}, {"times_ours", times.median / standard_ms}};
@@ -158,6 +162,19 @@ class PeerTable {
               projected_ms / standard_ms);
     }
     for (BenchRow& row : rows) bench_.result.add(std::move(row));
+    plots_.push_back(std::move(plot));
+  }
+
+  Plot empty_plot() const {
+    std::string name = "volume-mappers-" + data_->name + "-" + view_->name;
+    Plot plot{std::move(name),
+              "Error over time: " + label_,
+              {"time of a picture, ms", AxisScale::logarithmic},
+              {"largest error of a channel", AxisScale::logarithmic},
+              {}};
+    plot.series = {{"atomesh, closed forms", {}, false}, {"atomesh, samples a cell", {}}};
+    plot.guides = {{true, 1.0 / 512.0, "half a step of 8 bits"}};
+    return plot;
   }
 
   // The faster of the two ray casts, and the smaller of their errors.
@@ -211,6 +228,7 @@ class PeerTable {
   const BenchView* view_ = nullptr;
   std::string label_;
   std::string driver_;
+  std::vector<Plot> plots_;
   TextTable table_{{"case", "what", "ms", "range", "CPU ms", "first, ms", "times", "max error", "RMS", "PSNR, dB"}};
 };
 

@@ -41,10 +41,29 @@ std::string integrator_text(const Parameters& parameters) {
   return "";
 }
 
+bool has_integrator(Mode mode) {
+  return mode == Mode::volume || mode == Mode::volume_surface;
+}
+
+std::vector<Parameters> integrator_settings(const Parameters& parameters) {
+  if (!has_integrator(parameters.mode)) return {parameters};
+  std::vector<Parameters> all;
+  for (const Integrator integrator : {Integrator::exact, Integrator::linear, Integrator::preintegrated}) {
+    all.push_back(parameters);
+    all.back().integrator = integrator;
+  }
+  for (const int samples : {1, 4, 16}) {
+    all.push_back(parameters);
+    all.back().integrator = Integrator::sampled;
+    all.back().samples_per_cell = samples;
+  }
+  return all;
+}
+
 Json picture_settings(const Parameters& parameters, const std::string& view, const Camera& camera) {
   Json settings = Json::object({{"mode", mode_name(parameters.mode)}, {"view", view}});
   settings.set("projection", parameters.projection == Projection::parallel ? "parallel" : "perspective");
-  if (parameters.mode == Mode::volume || parameters.mode == Mode::volume_surface) {
+  if (has_integrator(parameters.mode)) {
     settings.set("integrator", integrator_text(parameters));
   }
   settings.set("size", Json::array({camera.width, camera.height}));

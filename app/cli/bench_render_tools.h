@@ -57,6 +57,12 @@ class TimedPicture {
 // "exact", "linear", "preintegrated", "sampled, 4 a cell".
 std::string integrator_text(const Parameters& parameters);
 
+// Whether the mode draws volumes.
+bool has_integrator(Mode mode);
+
+// These parameters with every integrator, and with several numbers of samples; as they are where the mode has none.
+std::vector<Parameters> integrator_settings(const Parameters& parameters);
+
 // {mode, view, projection, integrator, size, threads, renderer}, without the integrator where the mode has none.
 Json picture_settings(const Parameters& parameters, const std::string& view, const Camera& camera);
 

@@ -231,8 +231,12 @@ void VtkVolumeScene::draw(VtkMapper mapper, const Camera& camera) {
     p.window->Render();  // binds no attributes before its first thousand cells, which are lost
     p.projected_before = true;
   }
+  // Z sweep warns of edges between two vertices that it has moved to one pixel.
+  const int warnings = vtkObject::GetGlobalWarningDisplay();
+  if (mapper == VtkMapper::z_sweep) vtkObject::GlobalWarningDisplayOff();
   p.window->Render();
   p.window->WaitForCompletion();
+  vtkObject::SetGlobalWarningDisplay(warnings);
 }
 
 Image VtkVolumeScene::image() const {
