@@ -56,8 +56,8 @@ double quantum(VtkMapper mapper) {
 TEST_F(PeerVtkVolume, AConstantCubeLetsThroughWhatItShould) {
   const ColorMap map{{{0.0, {1.0F, 0.6F, 0.2F, 0.6F}}, {1.0, {1.0F, 0.6F, 0.2F, 0.6F}}}};
   const Parameters parameters = volume_looking("front", Projection::parallel, 0.25, map);
-  const Scene scene =
-      scene_of(box_material(2, 2, 2, 2.0), parameters, [](const Vec3f& p) { return 0.5F + 0.1F * p.z; });
+  const Material material = box_material(2, 2, 2, 2.0);
+  const Scene scene = scene_of(material, parameters, [](const Vec3f& p) { return 0.5F + 0.1F * p.z; });
   const Camera camera = make_camera(parameters, scene.bounds, 64, 48);
   const auto opacity = static_cast<float>(1.0 - std::exp(-0.25 * 0.6 * 4.0));
   cli::VtkVolumeScene vtk(scene, parameters);
@@ -86,8 +86,8 @@ TEST_F(PeerVtkVolume, ARampIsIntegratedBetweenTheKnotsOfTheMap) {
   for (const char* view : {"front", "back"}) {
     SCOPED_TRACE(view);
     const Parameters parameters = volume_looking(view, Projection::parallel, 0.2, map);
-    const Scene scene =
-        scene_of(box_material(1, 1, 1, 8.0), parameters, [](const Vec3f& p) { return (p.y + 4.0F) / 8.0F; });
+    const Material material = box_material(1, 1, 1, 8.0);
+    const Scene scene = scene_of(material, parameters, [](const Vec3f& p) { return (p.y + 4.0F) / 8.0F; });
     const Camera camera = make_camera(parameters, scene.bounds, 64, 64);
     const Drawn judge = draw(find_renderer("reference"), scene, camera, parameters);
     cli::VtkVolumeScene vtk(scene, parameters);
