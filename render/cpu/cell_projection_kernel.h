@@ -39,7 +39,7 @@ inline constexpr double ray_shift = 0x1p-24;
 inline constexpr double ray_lift = 0.15;
 
 // A ray that lets no more light through than this is finished.
-inline constexpr float opaque_enough = 0x1p-18F;
+inline constexpr float opaque_enough = 0x1p-20F;
 
 // MapIntervals::grid() has so many places for the scalars from 0 to 1.
 inline constexpr int map_grid_size = 256;
