@@ -42,6 +42,20 @@ std::string difference(const Image& a, const Image& b) {
   return different == 0 ? "" : std::to_string(different) + " pixels by up to " + std::to_string(largest * 1e6) + "e-6";
 }
 
+// Draws all phases of the strides into one picture.
+Image drawn_in_lattices(const Case& c, int column_stride, int row_stride) {
+  RenderStats stats;
+  Progress progress;
+  const auto frame = cpu_renderer().prepare(c.scene, c.camera, c.parameters, whole_picture(c.camera), stats, progress);
+  Image image = empty_picture(c.camera.width, c.camera.height);
+  for (int row = row_stride - 1; row >= 0; --row) {
+    for (int column = 0; column < column_stride; ++column) {
+      frame->draw({column_stride, row_stride, column, row}, image, stats, {}, progress);
+    }
+  }
+  return image;
+}
+
 // Draws windows of this size side by side, each with a lattice of its own.
 Image drawn_in_windows(const Case& c, int width, int height, int stride) {
   RenderStats stats;
@@ -108,11 +122,19 @@ class VolumeFrames : public testing::TestWithParam<std::tuple<Mode, Projection, 
   Case case_;
 };
 
+TEST_P(VolumeFrames, LatticesAreTheDirectPicture) {
+  const Image whole = direct();
+  for (const auto& [columns, rows] : {std::array{1, 1}, {2, 2}, {4, 4}, {8, 8}, {8, 1}, {2, 4}, {1, 8}}) {
+    EXPECT_EQ(difference(whole, drawn_in_lattices(case_, columns, rows)), "") << columns << " x " << rows;
+  }
+}
+
 TEST_P(VolumeFrames, WindowsAreTheDirectPicture) {
   const Image whole = direct();
   for (const auto& [width, height] : {std::array{32, 32}, {75, 9}, {13, 52}, {31, 33}, {200, 200}}) {
     EXPECT_EQ(difference(whole, drawn_in_windows(case_, width, height, 1)), "") << width << " x " << height;
   }
+  EXPECT_EQ(difference(whole, drawn_in_windows(case_, 29, 21, 4)), "");
 }
 
 TEST_P(VolumeFrames, ThreadsDrawTheDirectPicture) {
@@ -121,6 +143,7 @@ TEST_P(VolumeFrames, ThreadsDrawTheDirectPicture) {
   for (const int count : {2, 5}) {
     set_threads(count);
     EXPECT_EQ(difference(one, direct()), "") << count;
+    EXPECT_EQ(difference(one, drawn_in_lattices(case_, 4, 4)), "") << count;
   }
   set_threads(0);
 }
