@@ -199,7 +199,7 @@ void add_volume(Table& t) {
          "Weight of vacancy defects in an atom's scalar.", of(&P::vacancy_multiplier));
   t.name("volume.field", "Field",
          "The scalar that is shown: a field of an imported mesh, or defects; auto shows the defects where there are "
-         "any, else the first field.",
+         "any, else the first field that varies.",
          of(&P::field));
   t.real("volume.range_low", "Range from", "", -1e300, 1e300,
          "Value of the field that the color map's 0 stands for; auto is its smallest.", of(&P::range_low));

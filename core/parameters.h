@@ -75,8 +75,8 @@ struct VolumeSurfaceParameters {
 // B.6.3.3. Scalar of an atom = weighted sum of its three defect values, normalised to [0,1] over the sample's atoms
 // (range [0, max]); or a field of an imported mesh, normalised from its range. Coloured by the map.
 struct VolumeParameters {
-  // A name in Material::fields, or "defects"; empty ("auto"): the defects where the material has them, else its first
-  // field.
+  // A name in Material::fields, or "defects"; empty ("auto"): the defects where the material has them, else the first
+  // field that is not the same everywhere.
   std::string field;
   std::optional<double> range_low;   // of the field, what the colour map's 0 stands for; absent ("auto"): its smallest
   std::optional<double> range_high;  // and 1; its largest

@@ -21,7 +21,13 @@ const VertexField* shown_field(const Material& material, const VolumeParameters&
                 std::to_string(material.mesh.vertices.size()) + " vertices");
   }
   if (parameters.field.empty()) {
-    return material.defects.present() || fields.empty() ? nullptr : &fields.front();
+    if (material.defects.present() || fields.empty()) return nullptr;
+    const auto varies = [](const VertexField& field) {
+      const auto [smallest, largest] = std::minmax_element(field.values.begin(), field.values.end());
+      return !field.values.empty() && *smallest < *largest;
+    };
+    const auto first = std::find_if(fields.begin(), fields.end(), varies);
+    return first == fields.end() ? &fields.front() : &*first;
   }
   const auto named = std::find_if(fields.begin(), fields.end(),
                                   [&](const VertexField& field) { return field.name == parameters.field; });

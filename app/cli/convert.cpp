@@ -18,6 +18,7 @@ namespace {
 struct ConvertArguments {
   std::string input;
   std::string output;
+  MeshFileOptions mesh;
   PipelineOptions options;
 };
 
@@ -43,7 +44,7 @@ int run_convert(const ConvertArguments& arguments, const CLI::App& app, Session&
   const bool defects = !only_atoms || (extension == ".xyz" && is_material_file(arguments.input));
   const LoadedMaterial loaded = load_material(
       arguments.input, {.atoms = true, .tetrahedra = !only_atoms, .surface = !only_atoms, .defects = defects}, app,
-      arguments.options, session);
+      arguments.options, session, arguments.mesh);
   const Material& material = loaded.material;
   session.progress().stage("write");
   if (extension == ".dat") {
@@ -71,8 +72,10 @@ int run_convert(const ConvertArguments& arguments, const CLI::App& app, Session&
 
 Command add_convert(CLI::App& app) {
   auto arguments = std::make_shared<ConvertArguments>();
-  app.add_option("IN", arguments->input, "A .crb or .crt, or an atoms file")->required();
+  app.add_option("IN", arguments->input, "A .crb or .crt, a mesh file (.vtu, .vtk, PLOT3D, TetGen), or an atoms file")
+      ->required();
   app.add_option("OUT", arguments->output, "The file to write: .dat, .xyz, .crb, .crt or .vtu")->required();
+  add_mesh_options(app, arguments->mesh);
   add_pipeline_options(app, arguments->options);
   app.footer(
       "Atoms to atoms copies them; atoms to .crb, .crt or .vtu preprocesses them on the way. A .xyz made from a .crb\n"

@@ -22,6 +22,7 @@ namespace {
 
 struct InfoArguments {
   std::string input;
+  MeshFileOptions mesh;
   PipelineOptions options;
 };
 
@@ -44,6 +45,7 @@ std::vector<Range> ranges_of(const Material& material) {
   add_range(ranges, "vacancy", material.defects.vacancy);
   add_range(ranges, "extra", material.defects.extra);
   for (const Column& column : material.atoms.columns) add_range(ranges, column.name, column.values);
+  for (const VertexField& field : material.fields) add_range(ranges, field.name, field.values);
   return ranges;
 }
 
@@ -58,6 +60,7 @@ std::size_t memory_of(const Material& m) {
   bytes += bytes_of(m.mesh.vertices) + bytes_of(m.mesh.tetrahedra) + bytes_of(m.mesh.vertex_atom);
   bytes += bytes_of(m.surface.triangles) + bytes_of(m.surface.tetrahedron) + bytes_of(m.surface.face);
   bytes += bytes_of(m.defects.positional) + bytes_of(m.defects.vacancy) + bytes_of(m.defects.extra);
+  for (const VertexField& field : m.fields) bytes += bytes_of(field.values);
   return bytes + bytes_of(m.defects.vacancies) + bytes_of(m.defects.extras) + bytes_of(m.defects.substitutions);
 }
 
@@ -68,9 +71,14 @@ std::vector<std::string> problems_of(const Material& material, Progress& progres
   return problems;
 }
 
+// Of the atoms, or of a mesh without any.
+Bounds material_bounds(const Material& material) {
+  return bounds_of(material.atoms.size() > 0 ? material.atoms.positions : material.mesh.vertices);
+}
+
 Json box_json(const Material& material) {
   const Box& box = material.atoms.box;
-  const Bounds bounds = bounds_of(material.atoms.positions);
+  const Bounds bounds = material_bounds(material);
   return Json::object({{"present", box.present()},
                        {"origin", box.origin},
                        {"vectors", Json::array({box.vectors[0], box.vectors[1], box.vectors[2]})},
@@ -134,9 +142,10 @@ Json version_of(const std::string& kind, const std::string& path) {
   return version;
 }
 
-// "crb" and "crt" are material files; an atoms file says how it was read.
+// "crb" and "crt" are material files; atoms and mesh files say how they were read.
 std::string kind_of(const std::string& path, const LoadedMaterial& loaded) {
   if (loaded.report) return loaded.report->read.format;
+  if (loaded.mesh) return loaded.mesh->format;
   return std::filesystem::path(path).extension() == ".crt" ? "crt" : "crb";
 }
 
@@ -151,14 +160,22 @@ std::string found_text(const LoadedMaterial& loaded) {
 void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, const std::vector<SectionInfo>& sections,
                 const std::vector<std::string>& problems, const std::optional<SpaceGroup>& group, Session& session) {
   const Material& material = loaded.material;
-  const Bounds bounds = bounds_of(material.atoms.positions);
+  const Bounds bounds = material_bounds(material);
+  // Nobody says in which unit a mesh file is.
+  const char* unit = material.atoms.size() > 0 ? " Å" : "";
   const Box& box = material.atoms.box;
   session.print("{} ({})", arguments.input, kind_of(arguments.input, loaded));
-  session.print("atoms        {} ({})", grouped(material.atoms.size()), species_text(material.atoms));
+  if (material.atoms.size() > 0) {
+    session.print("atoms        {} ({})", grouped(material.atoms.size()), species_text(material.atoms));
+  }
+  if (loaded.mesh) {
+    session.print("cells        {} of {} points", grouped(loaded.mesh->cells), grouped(loaded.mesh->points));
+  }
+  session.print("vertices     {}", grouped(material.mesh.vertices.size()));
   session.print("tetrahedra   {}", grouped(material.mesh.tetrahedra.size()));
   session.print("triangles    {}", grouped(material.surface.triangles.size()));
-  session.print("bounds       {:.4f} {:.4f} {:.4f} to {:.4f} {:.4f} {:.4f} Å", bounds.min.x, bounds.min.y, bounds.min.z,
-                bounds.max.x, bounds.max.y, bounds.max.z);
+  session.print("bounds       {:.4f} {:.4f} {:.4f} to {:.4f} {:.4f} {:.4f}{}", bounds.min.x, bounds.min.y, bounds.min.z,
+                bounds.max.x, bounds.max.y, bounds.max.z, unit);
   if (box.present()) {
     session.print("box          {:.4f} × {:.4f} × {:.4f} Å, periodic: {}{}{}", glm::length(box.vectors[0]),
                   glm::length(box.vectors[1]), glm::length(box.vectors[2]), box.periodic[0] ? "x" : "-",
@@ -205,7 +222,7 @@ void print_info(const InfoArguments& arguments, const LoadedMaterial& loaded, co
 }
 
 int run_info(const InfoArguments& arguments, const CLI::App& app, Session& session) {
-  const LoadedMaterial loaded = load_material(arguments.input, {}, app, arguments.options, session);
+  const LoadedMaterial loaded = load_material(arguments.input, {}, app, arguments.options, session, arguments.mesh);
   const Material& material = loaded.material;
   const std::string kind = kind_of(arguments.input, loaded);
   const std::vector<SectionInfo> sections = kind == "crb" ? list_sections(arguments.input) : std::vector<SectionInfo>();
@@ -253,7 +270,9 @@ int run_info(const InfoArguments& arguments, const CLI::App& app, Session& sessi
 
 Command add_info(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
-  app.add_option("FILE", arguments->input, "A .crb or .crt, or an atoms file to preprocess on the way")->required();
+  app.add_option("FILE", arguments->input, "A .crb or .crt, a mesh file, or an atoms file to preprocess on the way")
+      ->required();
+  add_mesh_options(app, arguments->mesh);
   add_pipeline_options(app, arguments->options);
   app.footer("Example:\n  atomesh info nacl.crb --json -\n");
   return [arguments, &app](Session& session) { return run_info(*arguments, app, session); };

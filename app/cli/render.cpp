@@ -55,6 +55,8 @@ struct RenderArguments {
   bool transparent = false;
   std::vector<std::string> channels;
   bool help_parameters = false;
+  std::string field;
+  MeshFileOptions mesh;
   PipelineOptions options;
 };
 
@@ -72,6 +74,7 @@ Parameters chosen_parameters(const RenderArguments& arguments) {
     }
     set_parameter(parameters, setting.substr(0, equals), std::string_view(setting).substr(equals + 1));
   }
+  if (!arguments.field.empty()) set_parameter(parameters, "volume.field", arguments.field);
   if (arguments.transparent) parameters.background.a = 0.0F;
   return parameters;
 }
@@ -125,7 +128,7 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   };
   const auto start = clock::now();
   const LoadedMaterial loaded =
-      load_material(arguments.input, parts_needed(parameters), app, arguments.options, session);
+      load_material(arguments.input, parts_needed(parameters), app, arguments.options, session, arguments.mesh);
   for (const std::string& setting : arguments.settings) {
     check_species_key(setting.substr(0, setting.find('=')), loaded.material.atoms);
   }
@@ -177,7 +180,8 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
 
 Command add_render(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
-  app.add_option("FILE", arguments->input, "A .crb or .crt, or an atoms file to preprocess on the way");
+  app.add_option("FILE", arguments->input,
+                 "A .crb or .crt, a mesh file (.vtu, .vtk, PLOT3D, TetGen), or an atoms file to preprocess on the way");
   app.add_option("-o,--output", arguments->output, "The picture to write")->type_name("IMG.png");
   app.add_option("--mode", arguments->mode, "volume-surface, volume, surface, xray or atoms [volume-surface]")
       ->type_name("MODE");
@@ -191,6 +195,9 @@ Command add_render(CLI::App& app) {
   app.add_option("--renderer", arguments->renderer, "auto, cpu, or reference: the judge, exact and slow")
       ->type_name("NAME")
       ->capture_default_str();
+  app.add_option("--field", arguments->field, "The scalar that the volume shows, as --set volume.field=NAME")
+      ->type_name("NAME");
+  add_mesh_options(app, arguments->mesh);
   app.add_flag("--transparent", arguments->transparent, "Leave the background transparent");
   app.add_option("--channel", arguments->channels,
                  "Also write numbers per pixel: thickness (Å, mode xray), depth (Å) or id (modes surface, atoms)")
@@ -207,7 +214,8 @@ Command add_render(CLI::App& app) {
   app.footer(
       "Example:\n"
       "  atomesh render nacl.crb -o nacl.png --mode volume-surface --view iso --set volume_surface.face_alpha=0.3\n"
-      "  atomesh render nacl.dat -o atoms.png --mode atoms --size 1920x1080\n");
+      "  atomesh render nacl.dat -o atoms.png --mode atoms --size 1920x1080\n"
+      "  atomesh render combxyz.bin -o comb.png --mode volume --field Density --set volume.alpha_length=0.5\n");
   return [arguments, &app](Session& session) { return run_render(*arguments, app, session); };
 }
 

@@ -59,9 +59,18 @@ void write_vtu(const std::string& path, const Material& material) {
   }
   grid->SetCells(VTK_TETRA, cells);
 
+  for (const VertexField& field : material.fields) {
+    vtkNew<vtkFloatArray> array;
+    array->SetName(field.name.c_str());
+    array->SetNumberOfTuples(static_cast<vtkIdType>(field.values.size()));
+    std::copy(field.values.begin(), field.values.end(), array->GetPointer(0));
+    grid->GetPointData()->AddArray(array);
+  }
   const std::span<const Index> atoms = mesh.vertex_atom;
-  add_point_data<vtkIntArray>(*grid, "species", atoms, -1, [&](Index a) { return material.atoms.species[a]; });
-  add_point_data<vtkIntArray>(*grid, "atom", atoms, -1, [](Index a) { return a; });
+  if (material.atoms.size() > 0) {
+    add_point_data<vtkIntArray>(*grid, "species", atoms, -1, [&](Index a) { return material.atoms.species[a]; });
+    add_point_data<vtkIntArray>(*grid, "atom", atoms, -1, [](Index a) { return a; });
+  }
   const Defects& defects = material.defects;
   if (defects.present()) {
     add_point_data<vtkFloatArray>(*grid, "positional", atoms, 0.0F, [&](Index a) { return defects.positional[a]; });

@@ -46,6 +46,10 @@ TEST(SceneFields, TheFirstIsShownUnlessAnotherIsNamed) {
   const Bounds bounds = bounds_of(material.mesh.vertices);
   const Scene first = make_scene(material, showing(Mode::volume, ""));
   const Scene second = make_scene(material, showing(Mode::volume, "other"));
+  Material behind_flat = material;
+  std::swap(behind_flat.fields.front(), behind_flat.fields.back());
+  EXPECT_EQ(make_scene(behind_flat, showing(Mode::volume, "")).scalars,
+            make_scene(material, showing(Mode::volume, "other")).scalars);
   const Scene flat = make_scene(material, showing(Mode::volume, "flat"));
   ASSERT_EQ(first.scalars.size(), material.mesh.vertices.size());
   for (std::size_t v = 0; v < first.scalars.size(); ++v) {
