@@ -13,6 +13,7 @@
 #include "render/cpu/map_intervals.h"
 #include "render/cpu/surface_layers.h"
 #include "render/cpu/tile_bins.h"
+#include "render/shared/preintegration.h"
 
 namespace atomesh {
 
@@ -78,6 +79,7 @@ class CellProjectionFrame final : public Frame {
     optics_.alpha_length = static_cast<float>(alpha_length);
     optics_.integrator = parameters.integrator;
     optics_.samples = parameters.samples_per_cell;
+    if (parameters.integrator == Integrator::preintegrated) optics_.psi = optics::psi_table();
     if (!layered) {
       intervals_ = MapIntervals(parameters.volume.color_map);
       optics_.map = intervals_.data();

@@ -4,6 +4,7 @@
 
 // After lanes.h.
 #include "render/cpu/cell_projection_kernel.h"
+#include "render/shared/preintegration.h"
 #include "render/shared/segment.h"
 
 // After those, each needs the one before it.
@@ -12,6 +13,7 @@
 #include "render/cpu/cell_projection_setup.inl"
 #include "render/cpu/cell_projection_light.inl"
 #include "render/cpu/cell_projection_segment.inl"
+#include "render/cpu/cell_projection_table.inl"
 #include "render/cpu/cell_projection_colors.inl"
 #include "render/cpu/cell_projection_mapped.inl"
 #include "render/cpu/cell_projection_integrate.inl"

@@ -16,6 +16,8 @@ template <class Visit>
 static inline auto with_integrator(const CellOptics& optics, Visit visit) {
   if (optics.map == nullptr) {
     switch (optics.integrator) {
+      case Integrator::preintegrated:
+        return visit(TypeOf<ColorIntegrator<Preintegrated>>{});
       case Integrator::sampled:
         return visit(TypeOf<ColorIntegrator<Samples>>{});
       default:
@@ -25,6 +27,8 @@ static inline auto with_integrator(const CellOptics& optics, Visit visit) {
   switch (optics.integrator) {
     case Integrator::linear:
       return visit(TypeOf<MappedEndsIntegrator<ClosedForm>>{});
+    case Integrator::preintegrated:
+      return visit(TypeOf<MappedEndsIntegrator<Preintegrated>>{});
     case Integrator::sampled:
       return visit(TypeOf<MappedSamplesIntegrator>{});
     default:

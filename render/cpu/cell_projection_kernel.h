@@ -1,6 +1,6 @@
 // What the driver of cell projection and its kernels hand each other: plain structs, no classes. A kernel is one source
-// (cell_projection_blocks.inl, _setup.inl, _light.inl, _segment.inl, _colors.inl, _mapped.inl, _integrate.inl,
-// _layers.inl, _block.inl) compiled once per instruction set.
+// (cell_projection_blocks.inl, _setup.inl, _light.inl, _segment.inl, _table.inl, _colors.inl, _mapped.inl,
+// _integrate.inl, _layers.inl, _block.inl) compiled once per instruction set.
 //
 // Depth along a ray is carried as u, affine in the pixel for every plane and growing with depth z:
 //   perspective u = 1 - z_ref / z  (planes project so that 1/z is affine),   parallel u = z - z_ref,
@@ -135,6 +135,7 @@ struct CellOptics {
   float alpha_length;  // 1/Å
   Integrator integrator;
   int samples;                    // per cell, of Integrator::sampled
+  const float* psi;               // optics::psi_table(), of Integrator::preintegrated
   const MapInterval* map;         // mode volume; nullptr where vertices carry RGBA
   const std::uint16_t* map_grid;  // MapIntervals::grid()
   int map_intervals;

@@ -52,7 +52,8 @@ TEST(Integrators, ARaysLightDoesNotDependOnItsNeighbours) {
   Material material = box_material(7, 7, 7, 1.0, shaking(0.2, 11));
   add_defects(material, 4);
   for (const Mode mode : {Mode::volume_surface, Mode::volume}) {
-    for (const Integrator integrator : {Integrator::exact, Integrator::linear, Integrator::sampled}) {
+    for (const Integrator integrator :
+         {Integrator::exact, Integrator::linear, Integrator::preintegrated, Integrator::sampled}) {
       for (const double alpha_length : {0.02, 0.3, 3.0, 50.0}) {
         Parameters parameters = looking(mode, "iso", Projection::perspective);
         parameters.integrator = integrator;
