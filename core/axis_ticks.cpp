@@ -47,17 +47,11 @@ std::string tick_text(const Decimal& tick, double largest) {
   return sign + (mantissa == "1" ? ten : mantissa + "×" + ten);
 }
 
-std::string plain_text(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, std::abs(value));
-  return (value < 0.0 ? "−" : "") + std::string(text.data());
-}
-
 std::vector<AxisTick> ends(double min, double max) {
-  if (min == max) return {{min, plain_text(min, 6)}};
+  if (min == max) return {{min, rounded_text(min, 6)}};
   // 17 digits tell any two doubles apart.
   for (int digits = 6;; ++digits) {
-    std::vector<AxisTick> ticks{{min, plain_text(min, digits)}, {max, plain_text(max, digits)}};
+    std::vector<AxisTick> ticks{{min, rounded_text(min, digits)}, {max, rounded_text(max, digits)}};
     if (ticks[0].text != ticks[1].text || digits >= 17) return ticks;
   }
 }
@@ -85,6 +79,20 @@ std::string power_of_ten_text(int exponent) {
   if (exponent < 0) text += "⁻";
   for (const char digit : std::to_string(std::abs(exponent))) text += raised[static_cast<std::size_t>(digit - '0')];
   return text;
+}
+
+std::string rounded_text(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, std::abs(value));
+  std::string number = text.data();
+  const std::string sign = value < 0.0 ? "−" : "";
+  const std::size_t e = number.find('e');
+  if (e == std::string::npos) return sign + (std::isfinite(value) ? with_groups(number) : number);
+  const int exponent = std::stoi(number.substr(e + 1));
+  // %g leaves fixed notation as soon as there are more digits before the point than asked for; people do later.
+  if (exponent > 0 && exponent < 6) return sign + with_groups(fixed(std::stod(number), 0));
+  const std::string mantissa = number.substr(0, e);
+  return sign + (mantissa == "1" ? "" : mantissa + "×") + power_of_ten_text(exponent);
 }
 
 std::vector<AxisTick> linear_ticks(double min, double max, int at_most) {

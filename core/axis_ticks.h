@@ -20,6 +20,10 @@ std::vector<AxisTick> linear_ticks(double min, double max, int at_most);
 // third … of them; where that leaves fewer than two, linear ticks. min must be above 0.
 std::vector<AxisTick> logarithmic_ticks(double min, double max, int at_most);
 
+// Rounded to that many significant digits, 1 to 17: "83.7", "1,230", "−0.05", "4.57×10⁷", "3×10⁻⁶". What is not finite
+// as C writes it.
+std::string rounded_text(double value, int digits);
+
 // 10 to the `exponent`: "10⁻³".
 std::string power_of_ten_text(int exponent);
 

@@ -6,11 +6,8 @@
 
 namespace atomesh::cli {
 
-// With & < > " ' escaped, so that it can stand between tags and inside a quoted attribute, and without the control
-// characters that XML does not have. Bytes that are no UTF-8 become U+FFFD.
+// With & < > " ' escaped, so that it can stand between tags and inside a quoted attribute, and without the characters
+// that XML does not have. Bytes that are no UTF-8 become U+FFFD.
 std::string escape_markup(std::string_view text);
-
-// Unicode characters of a UTF-8 text.
-int count_characters(std::string_view text);
 
 }  // namespace atomesh::cli

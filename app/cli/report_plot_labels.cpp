@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "app/cli/report_markup.h"
+#include "core/utf8.h"
 
 namespace atomesh::cli {
 

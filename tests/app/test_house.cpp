@@ -64,6 +64,7 @@ const std::vector<HeavyLibrary>& heavy_libraries() {
       {"TetGen", std::regex("^tetgen\\.h$"), {"preprocess"}},
       {"spglib", std::regex("^spglib\\.h$"), {"preprocess"}},
       {"Embree", std::regex("^embree[0-9]/"), {"render"}},
+      {"FreeType", std::regex("^(ft2build\\.h$|freetype/)"), {"render"}},
       {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 4},  // a reader, a writer, and two peers of the benches
       {"toml++", std::regex("^toml(\\+\\+|plusplus|/|\\.)"), {"core"}},
       {"nlohmann-json", std::regex("^nlohmann/"), {"app"}},

@@ -41,6 +41,18 @@ TEST(AxisTicks, LogarithmicKnownAnswers) {
   EXPECT_EQ(power_of_ten_text(-12), "10⁻¹²");
 }
 
+TEST(AxisTicks, RoundedKnownAnswers) {
+  EXPECT_EQ(rounded_text(83.68, 3), "83.7");
+  EXPECT_EQ(rounded_text(1234.5, 3), "1,230");
+  EXPECT_EQ(rounded_text(-0.05, 3), "−0.05");
+  EXPECT_EQ(rounded_text(4.567e7, 3), "4.57×10⁷");
+  EXPECT_EQ(rounded_text(3e-6, 3), "3×10⁻⁶");
+  EXPECT_EQ(rounded_text(1e6, 3), "10⁶");
+  EXPECT_EQ(rounded_text(999999.0, 3), "10⁶");
+  EXPECT_EQ(rounded_text(0.0, 3), "0");
+  EXPECT_EQ(rounded_text(std::numeric_limits<double>::infinity(), 3), "inf");
+}
+
 TEST(AxisTicks, NothingOfNothing) {
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
