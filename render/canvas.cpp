@@ -6,7 +6,7 @@
 namespace atomesh {
 
 void Canvas::blend(int column, int row, const Vec4f& color, float coverage) {
-  const PixelBox here = clipped({column, row, column + 1, row + 1});
+  const CanvasBox here = clipped({column, row, column + 1, row + 1});
   if (here.width() <= 0 || here.height() <= 0) return;
   const float above = color.a * coverage;
   if (above <= 0.0F) return;
@@ -17,21 +17,21 @@ void Canvas::blend(int column, int row, const Vec4f& color, float coverage) {
 }
 
 void Canvas::set(int column, int row, const Vec4f& color) {
-  const PixelBox here = clipped({column, row, column + 1, row + 1});
+  const CanvasBox here = clipped({column, row, column + 1, row + 1});
   if (here.width() > 0 && here.height() > 0) image_.at(column, row - first_row_) = color;
 }
 
-PixelBox Canvas::clipped(const PixelBox& box) const {
+CanvasBox Canvas::clipped(const CanvasBox& box) const {
   return {std::max(box.left, 0), std::max(box.top, first_row_), std::min(box.right, image_.width),
           std::min(box.bottom, first_row_ + image_.height)};
 }
 
-void Canvas::fill(const PixelBox& box, const Vec4f& color) {
+void Canvas::fill(const CanvasBox& box, const Vec4f& color) {
   fill_rounded(box, 0.0, color);
 }
 
-void Canvas::fill_rounded(const PixelBox& box, double radius, const Vec4f& color) {
-  const PixelBox here = clipped(box);
+void Canvas::fill_rounded(const CanvasBox& box, double radius, const Vec4f& color) {
+  const CanvasBox here = clipped(box);
   const double round = std::min(radius, 0.5 * std::min(box.width(), box.height()));
   // How far the pixel's centre lies within the straight part of the box, along one axis; below 0 in a corner.
   const auto beyond = [round](int pixel, int begin, int end) {
@@ -48,7 +48,7 @@ void Canvas::fill_rounded(const PixelBox& box, double radius, const Vec4f& color
   }
 }
 
-void Canvas::frame(const PixelBox& box, int thickness, const Vec4f& color) {
+void Canvas::frame(const CanvasBox& box, int thickness, const Vec4f& color) {
   const int t = thickness;
   fill({box.left - t, box.top - t, box.right + t, box.top}, color);
   fill({box.left - t, box.bottom, box.right + t, box.bottom + t}, color);

@@ -6,7 +6,7 @@
 namespace atomesh {
 
 // Pixels of a rectangle: columns left … right-1 and rows top … bottom-1 of the picture.
-struct PixelBox {
+struct CanvasBox {
   int left = 0;
   int top = 0;
   int right = 0;
@@ -27,14 +27,14 @@ class Canvas {
   // The pixel becomes `color` whatever was there.
   void set(int column, int row, const Vec4f& color);
 
-  void fill(const PixelBox& box, const Vec4f& color);
+  void fill(const CanvasBox& box, const Vec4f& color);
   // With round corners, antialiased; a square with a radius of half its side is a disc.
-  void fill_rounded(const PixelBox& box, double radius, const Vec4f& color);
+  void fill_rounded(const CanvasBox& box, double radius, const Vec4f& color);
   // A frame of that many pixels just outside the box.
-  void frame(const PixelBox& box, int thickness, const Vec4f& color);
+  void frame(const CanvasBox& box, int thickness, const Vec4f& color);
 
   // What of `box` lies in the band.
-  PixelBox clipped(const PixelBox& box) const;
+  CanvasBox clipped(const CanvasBox& box) const;
 
  private:
   Image& image_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/axis_ticks.h"
+#include "render/scene_parts.h"
 
 namespace atomesh {
 
@@ -34,7 +35,11 @@ Legend xray_legend(const XrayParameters& parameters, const Vec4f& background, do
 }
 
 Legend color_map_legend(const ColorMap& map, const ShownScalar& scalar) {
-  LegendScale scale{scalar.min, scalar.max, {}};
+  LegendScale scale;
+  scale.min = scalar.min;
+  scale.max = scalar.max;
+  scale.below = scalar.below;
+  scale.above = scalar.above;
   scale.color = [map, scalar](double value) {
     // Halved, so that no range is too long for a double.
     const double range = 0.5 * scalar.max - 0.5 * scalar.min;
@@ -70,6 +75,13 @@ Legend atoms_legend(const Scene& scene, const Atoms& atoms) {
 std::optional<Legend> make_legend(const Scene& scene, const Material& material, const Parameters& parameters,
                                   double max_thickness) {
   if (scene.tetrahedra.empty() && scene.surface.empty() && scene.balls.empty()) return std::nullopt;
+  if (scene.mode == Mode::volume || scene.mode == Mode::volume_surface) {
+    if (const VertexField* field = shown_field(material, parameters.volume)) {
+      const FieldRange range = field_range(*field, parameters.volume);
+      return color_map_legend(parameters.volume.color_map,
+                              {field->name, range.low, range.high, range.below, range.above});
+    }
+  }
   switch (scene.mode) {
     case Mode::volume_surface:
       return volume_surface_legend(parameters.volume_surface, material.defects.present());

@@ -21,6 +21,9 @@ struct LegendScale {
   // A value that is marked: where the colour stops changing.
   std::optional<double> mark{};
   std::string mark_text{};
+  // Whether there are values beyond the ends, which then have the ends' colours.
+  bool below = false;
+  bool above = false;
 };
 
 struct LegendEntry {
@@ -45,6 +48,8 @@ struct ShownScalar {
   std::string name;  // with its unit where it has one
   double min = 0.0;
   double max = 1.0;
+  bool below = false;  // there are values below min
+  bool above = false;
 };
 // The colour map without its opacities. A scalar that is the same everywhere has the colour of the map's middle.
 Legend color_map_legend(const ColorMap& map, const ShownScalar& scalar);
@@ -55,9 +60,10 @@ Legend volume_surface_legend(const VolumeSurfaceParameters& parameters, bool def
 // The species of the balls in the scene with their colours, in the order of the table of species.
 Legend atoms_legend(const Scene& scene, const Atoms& atoms);
 
-// The legend of the scene's mode; nothing for mode surface, whose one colour is that of the lights and the material, or
-// when the picture shows nothing. `max_thickness` is for mode xray: the largest of Channels::thickness or, where the
-// picture is drawn in passes and nobody knows it yet, largest_possible_thickness().
+// The legend of the scene's mode: in the modes of the volume, that of the field where one is shown. Nothing for mode
+// surface, whose one colour is that of the lights and the material, or when the picture shows nothing. `max_thickness`
+// is for mode xray: the largest of Channels::thickness or, where the picture is drawn in passes and nobody knows it
+// yet, largest_possible_thickness().
 std::optional<Legend> make_legend(const Scene& scene, const Material& material, const Parameters& parameters,
                                   double max_thickness);
 

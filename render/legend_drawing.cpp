@@ -84,13 +84,13 @@ void LegendDrawing::lay_out_scale(const Legend& legend) {
   const auto add = [&](double value, const std::string& text) {
     const double at = place(value);
     for (const Label& other : labels) {
-      if (std::abs(at - other.place) * bar_height < 1.2 * size_) return;
+      if (std::abs(at - other.place) * bar_height < 1.4 * size_) return;
     }
     labels.push_back({at, text});
   };
   if (scale.mark) add(*scale.mark, scale.mark_text);
-  add(scale.max, rounded_text(scale.max, 3));
-  add(scale.min, rounded_text(scale.min, 3));
+  add(scale.max, (scale.above ? "≥ " : "") + rounded_text(scale.max, 3));
+  add(scale.min, (scale.below ? "≤ " : "") + rounded_text(scale.min, 3));
   const int at_most = std::max(2, static_cast<int>(bar_height / (2.0 * size_)));
   for (const AxisTick& t : linear_ticks(scale.min, scale.max, at_most)) add(t.value, t.text);
 
@@ -104,9 +104,9 @@ void LegendDrawing::lay_out_scale(const Legend& legend) {
   const int height = 2 * pad_ + static_cast<int>(std::ceil(title_height + 0.8 * size_)) + bar_height;
   if (!fits(width, height)) return;
 
-  const PixelBox box{width_ - margin_ - width, height_ - margin_ - height, width_ - margin_, height_ - margin_};
-  const PixelBox bar{box.left + pad_ + line_, box.bottom - pad_ - pixels(0.4) - bar_height,
-                     box.left + pad_ + line_ + bar_width, box.bottom - pad_ - pixels(0.4)};
+  const CanvasBox box{width_ - margin_ - width, height_ - margin_ - height, width_ - margin_, height_ - margin_};
+  const CanvasBox bar{box.left + pad_ + line_, box.bottom - pad_ - pixels(0.4) - bar_height,
+                      box.left + pad_ + line_ + bar_width, box.bottom - pad_ - pixels(0.4)};
   if (!title.empty()) texts_.push_back({title, 1.0 * box.left + pad_, box.top + pad_ + 0.78 * size_});
   for (const Label& label : labels) {
     const double y = bar.bottom - label.place * bar_height;
@@ -116,7 +116,9 @@ void LegendDrawing::lay_out_scale(const Legend& legend) {
   }
   if (scale.mark) {
     const int row = static_cast<int>(std::lround(bar.bottom - place(*scale.mark) * bar_height - 0.5 * line_));
-    lines_.push_back({bar.left, row, bar.right, row + line_});
+    // Black or white, whichever stands out from the colour there.
+    const bool dark = luma(scale.color(*scale.mark)) < 0.5F;
+    mark_ = Mark{{bar.left, row, bar.right, row + line_}, Vec4f(Vec3f(dark ? 1.0F : 0.0F), 1.0F)};
   }
   legend_box_ = box;
   color_bar_ = bar;
@@ -149,11 +151,11 @@ void LegendDrawing::lay_out_entries(const Legend& legend) {
   const int height = 2 * pad_ + rows * row_height - pixels(0.4);
   if (!fits(width, height)) return;
 
-  const PixelBox box{width_ - margin_ - width, height_ - margin_ - height, width_ - margin_, height_ - margin_};
+  const CanvasBox box{width_ - margin_ - width, height_ - margin_ - height, width_ - margin_, height_ - margin_};
   const double text_x = box.left + pad_ + swatch + gap;
   int top = box.top + pad_;
   for (const LegendEntry& entry : entries) {
-    const PixelBox square{box.left + pad_, top, box.left + pad_ + swatch, top + swatch};
+    const CanvasBox square{box.left + pad_, top, box.left + pad_ + swatch, top + swatch};
     swatches_.push_back({square, legend.balls ? 0.5 * swatch : 0.15 * swatch, Vec4f(entry.color, 1.0F)});
     texts_.push_back({entry.name, text_x, top + 0.5 * swatch + 0.36 * size_});
     top += row_height;
@@ -172,7 +174,9 @@ void LegendDrawing::lay_out_scale_bar(const ScaleBar& bar) {
   const int width = content + 2 * pad_;
   const int height = 2 * pad_ + pixels(1.2) + end;
   if (length < 4 || !fits(width, height)) return;
-  const PixelBox box{margin_, height_ - margin_ - height, margin_ + width, height_ - margin_};
+  const CanvasBox box{margin_, height_ - margin_ - height, margin_ + width, height_ - margin_};
+  // Both stand on the picture's lower edge.
+  if (legend_box_ && box.right > legend_box_->left) return;
   const int left = box.left + pad_ + (content - length) / 2;
   const int middle = box.bottom - pad_ - end / 2;
   lines_.push_back({left, middle - thick / 2, left + length, middle - thick / 2 + thick});
@@ -188,13 +192,14 @@ void LegendDrawing::draw(Canvas& canvas) const {
   if (scale_bar_box_) canvas.fill_rounded(*scale_bar_box_, round, panel_);
   const Vec4f faint(Vec3f(ink_), 0.6F);
   if (color_bar_) {
-    const PixelBox here = canvas.clipped(*color_bar_);
+    const CanvasBox here = canvas.clipped(*color_bar_);
     for (int row = here.top; row < here.bottom; ++row) {
       // The colour of the picture's pixels themselves, see-through ones too.
       const Vec4f color = bar_color_((color_bar_->bottom - (row + 0.5)) / color_bar_->height());
       for (int column = here.left; column < here.right; ++column) canvas.set(column, row, color);
     }
     canvas.frame(*color_bar_, line_, faint);
+    if (mark_) canvas.fill(mark_->box, mark_->color);
   }
   for (const Swatch& swatch : swatches_) {
     // A rim, so that a swatch of the panel's colour is seen.
@@ -203,7 +208,7 @@ void LegendDrawing::draw(Canvas& canvas) const {
                         swatch.radius + rim, faint);
     canvas.fill_rounded(swatch.box, swatch.radius, swatch.color);
   }
-  for (const PixelBox& line : lines_) canvas.fill(line, ink_);
+  for (const CanvasBox& line : lines_) canvas.fill(line, ink_);
   for (const Text& text : texts_) draw_text(canvas, text.text, text.x, text.baseline, size_, ink_);
 }
 

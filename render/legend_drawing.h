@@ -20,10 +20,10 @@ class LegendDrawing {
   void draw(Canvas& canvas) const;
 
   // The panels, where they are drawn.
-  const std::optional<PixelBox>& legend_box() const { return legend_box_; }
-  const std::optional<PixelBox>& scale_bar_box() const { return scale_bar_box_; }
+  const std::optional<CanvasBox>& legend_box() const { return legend_box_; }
+  const std::optional<CanvasBox>& scale_bar_box() const { return scale_bar_box_; }
   // The bar of colours within the legend, for a legend with a scale: its first row is that of the largest value.
-  const std::optional<PixelBox>& color_bar() const { return color_bar_; }
+  const std::optional<CanvasBox>& color_bar() const { return color_bar_; }
 
  private:
   struct Text {
@@ -32,8 +32,13 @@ class LegendDrawing {
     double baseline;
   };
   struct Swatch {
-    PixelBox box;
+    CanvasBox box;
     double radius;
+    Vec4f color;
+  };
+
+  struct Mark {
+    CanvasBox box;
     Vec4f color;
   };
 
@@ -53,13 +58,14 @@ class LegendDrawing {
   int line_;     // thickness of frames and ticks
   Vec4f panel_;
   Vec4f ink_;
-  std::optional<PixelBox> legend_box_;
-  std::optional<PixelBox> scale_bar_box_;
-  std::optional<PixelBox> color_bar_;
+  std::optional<CanvasBox> legend_box_;
+  std::optional<CanvasBox> scale_bar_box_;
+  std::optional<CanvasBox> color_bar_;
   std::function<Vec4f(double)> bar_color_;  // of a row's place on the bar: 0 at the bottom, 1 at the top
+  std::optional<Mark> mark_;
   std::vector<Text> texts_;
   std::vector<Swatch> swatches_;
-  std::vector<PixelBox> lines_;
+  std::vector<CanvasBox> lines_;
 };
 
 }  // namespace atomesh

@@ -45,7 +45,7 @@ const VertexField* shown_field(const Material& material, const VolumeParameters&
   throw UsageError("volume.field: the material has no field \"" + parameters.field + "\"" + advice);
 }
 
-std::vector<float> field_scalars(const VertexField& field, const VolumeParameters& parameters) {
+FieldRange field_range(const VertexField& field, const VolumeParameters& parameters) {
   if (field.values.empty()) return {};
   const auto [smallest, largest] = std::minmax_element(field.values.begin(), field.values.end());
   const double low = parameters.range_low.value_or(*smallest);
@@ -54,6 +54,13 @@ std::vector<float> field_scalars(const VertexField& field, const VolumeParameter
     throw UsageError("volume.range_low (" + real_text(low) + ") must be below volume.range_high (" + real_text(high) +
                      "); " + field.name + " goes from " + real_text(*smallest) + " to " + real_text(*largest));
   }
+  return {low, high, *smallest<low, *largest> high};
+}
+
+std::vector<float> field_scalars(const VertexField& field, const VolumeParameters& parameters) {
+  const FieldRange range = field_range(field, parameters);
+  const double low = range.low;
+  const double high = range.high;
   std::vector<float> scalars(field.values.size(), 0.5F);
   if (low >= high) return scalars;
   // Halved, so that no range is too long for a double.

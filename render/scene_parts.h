@@ -19,8 +19,16 @@ std::vector<Tetrahedron> cut_tetrahedra(const TetMesh& mesh, const Parameters& p
 // scene_fields.cpp
 // The field that is shown; nullptr for the defects. Throws UsageError naming the nearest for a name that is none.
 const VertexField* shown_field(const Material& material, const VolumeParameters& parameters);
-// From the field's range, or the one that is set, to [0,1]; what lies outside takes the nearer end, and a field of one
-// value the middle. Throws UsageError for a range that is set and empty.
+// What the colour map's 0 and 1 stand for: the field's range, or the one that is set, and whether the field has values
+// below and above it. Throws UsageError for a range that is set and empty.
+struct FieldRange {
+  double low = 0.0;
+  double high = 0.0;
+  bool below = false;
+  bool above = false;
+};
+FieldRange field_range(const VertexField& field, const VolumeParameters& parameters);
+// From that range to [0,1]; what lies outside takes the nearer end, and a field of one value the middle.
 std::vector<float> field_scalars(const VertexField& field, const VolumeParameters& parameters);
 std::vector<Vec4f> field_colors(const VertexField& field, const VolumeParameters& parameters);
 

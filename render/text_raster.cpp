@@ -66,8 +66,8 @@ class Font {
 
 // `left` and `top` of a glyph's picture: its first pixel.
 void draw_glyph(Canvas& canvas, const FT_Bitmap& bitmap, int left, int top, const Vec4f& color) {
-  const PixelBox box{left, top, left + static_cast<int>(bitmap.width), top + static_cast<int>(bitmap.rows)};
-  const PixelBox here = canvas.clipped(box);
+  const CanvasBox box{left, top, left + static_cast<int>(bitmap.width), top + static_cast<int>(bitmap.rows)};
+  const CanvasBox here = canvas.clipped(box);
   for (int row = here.top; row < here.bottom; ++row) {
     const unsigned char* coverage = bitmap.buffer + (row - top) * bitmap.pitch;
     for (int column = here.left; column < here.right; ++column) {

@@ -15,6 +15,7 @@
 #include "app/cli/parameter_text.h"
 #include "app/cli/picture_comparison.h"
 #include "app/cli/pipeline_options.h"
+#include "app/cli/render_legend.h"
 #include "app/cli/session.h"
 #include "app/cli/text_table.h"
 #include "app/cli/text_values.h"
@@ -54,6 +55,7 @@ struct RenderArguments {
   double tolerance = 0.0;
   bool transparent = false;
   std::vector<std::string> channels;
+  LegendOptions legend;
   bool help_parameters = false;
   std::string field;
   MeshFileOptions mesh;
@@ -141,7 +143,11 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   }
   const Camera camera = make_camera(parameters, scene.bounds, width, height);
   RenderStats stats;
-  const Image image = render(renderer, scene, camera, parameters, stats, channel_files.channels(), session.progress());
+  PictureLegend legend(arguments.legend, parameters.mode);
+  Image image =
+      render(renderer, scene, camera, parameters, stats, legend.channels(channel_files.channels()), session.progress());
+  legend.lay_out(scene, loaded.material, parameters, camera, true, session);
+  legend.draw(image);
   session.progress().stage("write_picture");
   write_png(arguments.output, image, picture_text(arguments, parameters, loaded.material, renderer.name()),
             session.progress());
@@ -165,6 +171,7 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
                             {"peak_memory_mb", peak_memory_mb()},
                             {"output", Json::object({{"file", arguments.output},
                                                      {"bytes", std::filesystem::file_size(arguments.output)}})}});
+  legend.add_to(json);
   int exit_code = exit_done;
   if (!arguments.reference.empty()) {
     const PictureComparison comparison = compare_pictures(arguments.output, arguments.reference, arguments.tolerance,
@@ -202,6 +209,7 @@ Command add_render(CLI::App& app) {
   app.add_option("--channel", arguments->channels,
                  "Also write numbers per pixel: thickness (Å, mode xray), depth (Å) or id (modes surface, atoms)")
       ->type_name("NAME=FILE.npy");
+  add_legend_options(app, arguments->legend);
   app.add_option("--reference", arguments->reference,
                  "Compare the picture with this one; where they differ, exit with 4 and leave IMG-difference.png")
       ->type_name("IMG");

@@ -267,6 +267,41 @@ TEST_F(Subcommands, TransparentBackgroundIsTransparent) {
   EXPECT_EQ(read_png(place->path("clear.png").string()).at(0, 0).a, 0.0F);
 }
 
+TEST_F(Subcommands, LegendsAreDrawnAndReported) {
+  const std::vector<std::string> xray{"render", "d.crb", "-o", "x.png", "--mode", "xray", "--size", "240x180"};
+  const auto with = [&xray](std::vector<std::string> more) {
+    more.insert(more.begin(), xray.begin(), xray.end());
+    return more;
+  };
+  EXPECT_FALSE(run_json(xray).contains("legend"));
+  const std::string plain = place->read("x.png");
+  const json report = run_json(with({"--legend", "--scale-bar", "--channel", "thickness=x.npy"}));
+  EXPECT_NE(place->read("x.png"), plain);
+  EXPECT_EQ(report["legend"]["title"], "thickness, Å");
+  EXPECT_EQ(report["legend"]["range"][0], 0.0);
+  EXPECT_GT(report["legend"]["range"][1], 10.0);
+  EXPECT_EQ(report["legend"]["range_of"], "picture");
+  EXPECT_TRUE(report["scale_bar"]["text"].get<std::string>().ends_with("Å at center"));
+  EXPECT_GT(report["scale_bar"]["pixels"], 10.0);
+  // The channel is the sample's, whatever is drawn over it.
+  const std::string thickness = place->read("x.npy");
+  run_json(with({"--channel", "thickness=x.npy"}));
+  EXPECT_EQ(place->read("x.npy"), thickness);
+
+  const json atoms = run_json({"render", "d.crb", "-o", "a.png", "--mode", "atoms", "--size", "240x180", "--legend"});
+  EXPECT_EQ(atoms["legend"]["entries"][0]["name"], "C");
+  EXPECT_EQ(atoms["legend"]["entries"][0]["color"], "#909090");
+  const json volume = run_json({"render", "d.crb", "-o", "v.png", "--mode", "volume", "--size", "240x180", "--legend"});
+  EXPECT_EQ(volume["legend"]["range"], json::array({0.0, 1.0}));
+  // What has no legend, and what has no room for one, is drawn without and says so.
+  const Outcome surface = run({"render", "d.crb", "-o", "s.png", "--mode", "surface", "--size", "240x180", "--legend"});
+  EXPECT_EQ(surface.exit_code, 0);
+  EXPECT_NE(surface.err.find("--legend: mode surface"), std::string::npos) << surface.err;
+  const Outcome small = run({"render", "d.crb", "-o", "s.png", "--mode", "xray", "--size", "24x18", "--legend"});
+  EXPECT_EQ(small.exit_code, 0);
+  EXPECT_NE(small.err.find("no room"), std::string::npos) << small.err;
+}
+
 TEST_F(Subcommands, InfoSaysWhatIsThere) {
   const json crb = run_json({"info", "d.crb"});
   expect_keys(crb, {"file", "kind", "version", "atoms", "tetrahedra", "triangles", "box", "species", "scalars",
