@@ -1,0 +1,261 @@
+// The catalogue of hard cases: whatever a ray runs through, no cell is missed and none counted twice. Known answers
+// first (the length of the ray inside the matter), then the judge.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "app/cli/hard_case_errors.h"
+#include "core/error.h"
+#include "preprocess/tetrahedralize.h"
+#include "render/cpu/cell_projection_kernel.h"
+#include "render/renderer.h"
+#include "samples/hard_cases.h"
+
+namespace atomesh {
+namespace {
+
+using namespace cli;
+
+constexpr double limit = 1e-5;
+
+const std::vector<HardCase>& catalogue() {
+  static const std::vector<HardCase> cases =
+      hard_cases([](std::span<const Vec3> points) { return delaunay_cgal(points, no_progress()); });
+  return cases;
+}
+
+// What is short of the limit, and why.
+struct Short {
+  const char* name;
+  const char* view;
+  double error;  // that it does keep to
+};
+double allowed(const std::vector<Short>& shorts, const HardCase& hard, const HardView& view) {
+  for (const Short& s : shorts) {
+    if (s.name == hard.name && s.view == view.name) return s.error;
+  }
+  return limit;
+}
+
+// How far cell projection's rays pass beside the pixel's centre, or what floats make of a place in a tile of 32 pixels.
+constexpr double fast_beside = std::max(1.01 * cell_projection::ray_shift, 0x1p-18);
+// The judge's pass by an infinitely small way, but the known answer is computed in double.
+constexpr double judge_beside = 0x1p-30;
+
+constexpr std::array<Integrator, 3> integrators{Integrator::exact, Integrator::linear, Integrator::preintegrated};
+
+std::vector<std::string> kernels() {
+  std::vector<std::string> names;
+  for (const char* name : {"baseline", "avx2", "avx512"}) {
+    try {
+      cell_projection::set_kernel(name);
+      names.emplace_back(name);
+    } catch (const UnavailableError&) {  // not on this processor
+    }
+  }
+  cell_projection::set_kernel("");
+  return names;
+}
+
+struct Drawn {
+  Image image;
+  std::vector<float> thickness, depth;
+};
+Drawn draw(const char* renderer, const Scene& scene, const Camera& camera, const Parameters& parameters) {
+  Drawn drawn;
+  RenderStats stats;
+  drawn.image = find_renderer(renderer).draw(scene, camera, parameters, stats,
+                                             {&drawn.thickness, &drawn.depth, nullptr}, no_progress());
+  return drawn;
+}
+
+void expect_length(const LengthError& error, double most, const std::string& where) {
+  EXPECT_TRUE(error.relative <= most && error.granted <= std::max(1.0, most / limit) && error.color <= limit)
+      << where << ": relative error " << error.relative << ", of short lengths " << error.granted
+      << " of what is granted, of colours " << error.color << "; at pixel " << error.column << ' ' << error.row
+      << " expected " << error.expected << " found " << error.found;
+}
+
+class HardCases : public testing::TestWithParam<int> {
+ protected:
+  const HardCase& hard() const { return catalogue()[static_cast<std::size_t>(GetParam())]; }
+  void SetUp() override {
+    if (hard().inverted) GTEST_SKIP() << "nothing is known of it";
+  }
+};
+
+constexpr int case_count = 30;
+
+TEST(HardCaseCatalogue, IsComplete) {
+  EXPECT_EQ(catalogue().size(), case_count);
+  for (const HardCase& hard : catalogue()) {
+    EXPECT_FALSE(hard.views.empty()) << hard.name;
+    if (hard.inverted) continue;
+    EXPECT_EQ(validate(hard.material.mesh), std::vector<std::string>{}) << hard.name;
+    EXPECT_EQ(validate(hard.material.surface, hard.material.mesh), std::vector<std::string>{}) << hard.name;
+  }
+}
+
+// The known answers are the meshes': their cells fill the solid.
+TEST(HardCaseCatalogue, CellsFillTheSolid) {
+  for (const HardCase& hard : catalogue()) {
+    const TetMesh& mesh = hard.material.mesh;
+    if (hard.inverted || mesh.tetrahedra.size() > 2000) continue;
+    const Camera& camera = hard.views.front().camera;
+    for (const double row : {7.3, 11.7, 15.2}) {
+      for (const double column : {9.1, 14.6, 18.9}) {
+        const Ray line = ray(camera, camera.x_of(column), camera.y_of(row));
+        double sum = 0.0;
+        for (const Tetrahedron& t : mesh.tetrahedra) {
+          const auto& p = mesh.vertices;
+          sum += Solid{{tetrahedron_body(p[t[0]], p[t[1]], p[t[2]], p[t[3]])}, {}}.chord(line);
+        }
+        EXPECT_NEAR(sum, hard.solid.chord(line), 1e-6 * (1.0 + sum)) << hard.name;
+      }
+    }
+  }
+}
+
+TEST_P(HardCases, OpticalDepthIsTheLengthInside) {
+  // Where a ray runs inside cells much narrower than floats tell pixels apart.
+  static const std::vector<Short> shorts{
+      {"a layer 1e-6 Å high", "nearly along the layer", 4e-4},
+      {"a layer 1e-6 Å high", "in the layer's plane, perspective", 0.06},
+      {"a grid with gaps of 1e-6 along x and y: needles", "along z, in the gap", 0.7}};
+  for (const HardView& view : hard().views) {
+    const KnownLengths known(hard(), view.camera, fast_beside);
+    for (const Mode mode : {Mode::volume, Mode::volume_surface}) {
+      const Scene scene = make_scene(hard().material, constant_density(mode, 1.0));
+      for (const double extinction : hard().extinctions) {
+        Parameters parameters = constant_density(mode, extinction);
+        for (const Integrator integrator : integrators) {
+          parameters.integrator = integrator;
+          for (const std::string& kernel : kernels()) {
+            cell_projection::set_kernel(kernel);
+            const Image image = draw("cpu", scene, view.camera, parameters).image;
+            expect_length(known.of_optical_depth(extinction, image), allowed(shorts, hard(), view),
+                          hard().name + ", " + view.name + ", " + std::string(mode_name(mode)) + ", integrator " +
+                              std::to_string(static_cast<int>(integrator)) + ", " + kernel + ", extinction " +
+                              std::to_string(extinction));
+          }
+          cell_projection::set_kernel("");
+        }
+      }
+    }
+  }
+}
+
+TEST_P(HardCases, TheJudgesOpticalDepthIsTheLengthInside) {
+  // An eye exactly on a vertex or an edge: cells that it touches are lost.
+  static const std::vector<Short> shorts{{"5³ cubes, eight of them missing", "the eye on a hole's corner", 1.0},
+                                         {"4³ cubes of six", "on a vertex", 1.0},
+                                         {"4³ cubes of six", "on a vertex, along an axis", 1.0},
+                                         {"4³ cubes of six", "on an edge", 1.0},
+                                         {"4³ cubes of six", "on an edge, along it", 1.0},
+                                         {"4³ cubes of six", "in a face, in its plane", 1.0},
+                                         {"4³ cubes of six", "on the hull's corner", 1.0},
+                                         {"4³ cubes of six", "on the hull's edge", 1.0},
+                                         {"a ball of 288 cells about one vertex", "on the vertex of all cells", 1.0},
+                                         {"64 cells about one edge", "on the edge of all cells, along it", 1.0}};
+  for (const HardView& view : hard().views) {
+    const KnownLengths known(hard(), view.camera, judge_beside);
+    for (const Mode mode : {Mode::volume, Mode::volume_surface}) {
+      const Scene scene = make_scene(hard().material, constant_density(mode, 1.0));
+      for (const double extinction : hard().extinctions) {
+        const Image image = draw("reference", scene, view.camera, constant_density(mode, extinction)).image;
+        expect_length(known.of_optical_depth(extinction, image), allowed(shorts, hard(), view),
+                      hard().name + ", " + view.name + ", " + std::string(mode_name(mode)) + ", extinction " +
+                          std::to_string(extinction));
+      }
+    }
+  }
+}
+
+TEST_P(HardCases, ThicknessIsTheLengthInside) {
+  const Parameters parameters = constant_density(Mode::xray, 1.0);
+  const Scene scene = make_scene(hard().material, parameters);
+  for (const HardView& view : hard().views) {
+    for (const char* renderer : {"reference", "cpu"}) {
+      const KnownLengths known(hard(), view.camera, renderer[0] == 'c' ? fast_beside : judge_beside);
+      expect_length(known.of_thickness(draw(renderer, scene, view.camera, parameters).thickness), limit,
+                    hard().name + ", " + view.name + ", " + renderer);
+    }
+  }
+}
+
+TEST_P(HardCases, DepthIsThatOfTheNearestCrossing) {
+  const Parameters parameters = constant_density(Mode::surface, 1.0);
+  const Scene scene = make_scene(hard().material, parameters);
+  for (const HardView& view : hard().views) {
+    for (const char* renderer : {"reference", "cpu"}) {
+      const KnownLengths known(hard(), view.camera, renderer[0] == 'c' ? fast_beside : judge_beside);
+      expect_length(known.of_crossing(draw(renderer, scene, view.camera, parameters).depth), limit,
+                    hard().name + ", " + view.name + ", " + renderer);
+    }
+  }
+}
+
+TEST_P(HardCases, VaryingValuesAreTheJudges) {
+  // Rays inside cells much narrower than floats tell pixels apart; the order of cells that overlap; and where the judge
+  // is short.
+  static const std::vector<Short> shorts{
+      {"a layer 1e-9 Å high", "nearly along the layer", 1e-4},
+      {"a layer 1e-6 Å high", "nearly along the layer", 2e-4},
+      {"a layer 1e-6 Å high", "in the layer's plane, perspective", 0.04},
+      {"a grid with gaps of 1e-6 along x and y: needles", "along z, in the gap", 0.06},
+      {"4³ cubes whose vertices went astray by up to 0.6", "oblique, parallel", 1e-3},
+      {"4³ cubes whose vertices went astray by up to 0.6", "oblique, perspective", 1e-3},
+      {"4³ cubes whose vertices went astray by up to 1.5", "oblique, parallel", 0.02},
+      {"4³ cubes whose vertices went astray by up to 1.5", "oblique, perspective", 0.02},
+      {"5³ cubes, eight of them missing", "the eye on a hole's corner", 1.0},
+      {"4³ cubes of six", "on a vertex", 1.0},
+      {"4³ cubes of six", "on a vertex, along an axis", 1.0},
+      {"4³ cubes of six", "on an edge", 1.0},
+      {"4³ cubes of six", "on an edge, along it", 1.0},
+      {"4³ cubes of six", "in a face, in its plane", 1.0},
+      {"4³ cubes of six", "on the hull's corner", 1.0},
+      {"4³ cubes of six", "on the hull's edge", 1.0},
+      {"a ball of 288 cells about one vertex", "on the vertex of all cells", 1.0},
+      {"64 cells about one edge", "on the edge of all cells, along it", 1.0}};
+  for (const Mode mode : {Mode::volume, Mode::volume_surface}) {
+    Parameters parameters = varying_density(mode, hard());
+    const Scene scene = make_scene(hard().material, parameters);
+    for (const HardView& view : hard().views) {
+      JudgedRays judge(scene, view.camera, parameters, fast_beside);
+      for (const std::string& kernel : kernels()) {
+        cell_projection::set_kernel(kernel);
+        const VariedError error = judge.error(draw("cpu", scene, view.camera, parameters).image);
+        EXPECT_LE(error.nearest, allowed(shorts, hard(), view))
+            << hard().name << ", " << view.name << ", " << mode_name(mode) << ", " << kernel << ": at pixel "
+            << error.column << ' ' << error.row << "; from the pixel's own centre " << error.centre;
+      }
+      cell_projection::set_kernel("");
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::Range(0, case_count));
+
+// Cells turned inside out are no mesh of ours: they may be left out, but nothing else may happen.
+TEST(HardCaseCatalogue, CellsInsideOutDoNoHarm) {
+  for (const HardCase& hard : catalogue()) {
+    if (!hard.inverted) continue;
+    for (const Mode mode : {Mode::volume, Mode::volume_surface, Mode::surface, Mode::xray}) {
+      const Parameters parameters = varying_density(mode, hard);
+      const Scene scene = make_scene(hard.material, parameters);
+      for (const HardView& view : hard.views) {
+        for (const Vec4f& pixel : draw("cpu", scene, view.camera, parameters).image.pixels) {
+          for (int k = 0; k < 4; ++k) {
+            ASSERT_GE(pixel[k], 0.0F) << hard.name << ' ' << mode_name(mode);
+            ASSERT_LE(pixel[k], 1.0F + 1e-6F) << hard.name << ' ' << mode_name(mode);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace atomesh
