@@ -238,6 +238,22 @@ Material field_of_rings_material(int side) {
   return finished(std::move(mesh));
 }
 
+Material soup_material(int count) {
+  TetMesh mesh;
+  Random random(11);
+  for (int i = 0; i < count; ++i) {
+    std::array<Vec3, 4> corners;
+    for (Vec3& p : corners) {
+      const double x = random.uniform();
+      const double y = random.uniform();
+      p = 4.0 * Vec3(x, y, random.uniform()) - 2.0;
+    }
+    add_apart(mesh, corners);
+  }
+  round_to_floats(mesh);
+  return finished(std::move(mesh));
+}
+
 Material tangled_material(int n, double amount, bool inverted) {
   const Material straight = grid_material(even_planes(n, 1.0), CubeSplit::six);
   std::vector<Vec3> moved = straight.mesh.vertices;

@@ -38,6 +38,8 @@ Material ball_material(int subdivisions, double radius);
 Material ring_material(int count);
 // `side`×`side` rings of four bars, side by side in the xz plane.
 Material field_of_rings_material(int side);
+// `count` cells with corners at random in a cube.
+Material soup_material(int count);
 // A grid of cubes whose inner vertices are moved by up to `amount` of the cubes' side along each axis: above 0.5 cells
 // turn over. Each cell has its own four vertices, and is turned back where it was inside out unless `inverted`.
 Material tangled_material(int n, double amount, bool inverted);

@@ -308,10 +308,13 @@ void add_disorder(std::vector<HardCase>& cases) {
   add(cyclic, "a ring of twelve", ring_material(12), true);
   add(cyclic, "25 rings of four", field_of_rings_material(5), true);
   const char* overlapping = "cells that overlap";
+  add(overlapping, "200 cells at random", soup_material(200), false);
   add(overlapping, "4³ cubes whose vertices went astray by up to 0.6", tangled_material(4, 0.6, false), false);
+  cases.back().known = HardCase::Known::lengths;
   add(overlapping, "4³ cubes whose vertices went astray by up to 1.5", tangled_material(4, 1.5, false), false);
+  cases.back().known = HardCase::Known::lengths;
   add(overlapping, "the same, cells left inside out", tangled_material(4, 1.5, true), false);
-  cases.back().inverted = true;
+  cases.back().known = HardCase::Known::nothing;
 }
 
 void add_behind(std::vector<HardCase>& cases) {

@@ -50,8 +50,13 @@ struct HardCase {
   Solid solid;
   std::vector<HardView> views;
   std::vector<double> extinctions;  // 1/Å at which a constant density is to be looked at
-  // Cells are turned inside out, which no stage of preprocessing hands on: only that nothing terrible happens is asked.
-  bool inverted = false;
+  // What can be held against a picture of it.
+  enum class Known {
+    values,   // every ray's length inside, and of varying values what the judge says
+    lengths,  // cells that overlap begin at one face, and which of them comes first nobody has laid down
+    nothing,  // cells are inside out, which no stage of preprocessing hands on: nothing terrible may happen
+  };
+  Known known = Known::values;
 };
 
 // Points → the tetrahedra of their Delaunay triangulation.

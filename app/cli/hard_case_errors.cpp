@@ -36,8 +36,9 @@ Parameters varying_density(Mode mode, const HardCase& hard) {
   return p;
 }
 
-double granted_length(const HardCase& hard) {
-  return granted_roundings * 0x1p-24 * 0.5 * bounds_of(hard.material.mesh.vertices).diagonal();
+double granted_length(const HardCase& hard, Projection projection) {
+  const double roundings = (projection == Projection::perspective ? 2.0 : 1.0) * granted_roundings;
+  return roundings * 0x1p-24 * 0.5 * bounds_of(hard.material.mesh.vertices).diagonal();
 }
 
 // Of `known(ray)` over nine rays about the pixel's centre.
@@ -55,7 +56,7 @@ KnownLengths::Range KnownLengths::around(int column, int row, Known known) const
 }
 
 KnownLengths::KnownLengths(const HardCase& hard, const Camera& camera, double beside)
-    : hard_(hard), camera_(camera), beside_(beside) {
+    : hard_(hard), camera_(camera), beside_(beside), granted_(granted_length(hard, camera.projection)) {
   for (int row = 0; row < camera.height; ++row) {
     for (int column = 0; column < camera.width; ++column) {
       chords_.push_back(around(column, row, [&](const Ray& r) { return hard.solid.chord(r); }));
@@ -67,10 +68,9 @@ KnownLengths::KnownLengths(const HardCase& hard, const Camera& camera, double be
 void KnownLengths::enter(std::size_t pixel, const Range& range, double found, double off, LengthError& error) const {
   if (range.high - range.low > 1e-3 * range.high) ++error.outline;
   if (range.high > 0.0) ++error.pixels;
-  const double granted = granted_length(hard_);
-  const bool counts = range.high >= 1e5 * granted;
+  const bool counts = range.high >= 1e5 * granted_;
   double& worst = counts ? error.relative : error.granted;
-  double measured = counts ? off / range.high : off / granted;
+  double measured = counts ? off / range.high : off / granted_;
   if (!std::isfinite(measured)) measured = std::numeric_limits<double>::infinity();
   if (measured <= worst) return;
   worst = measured;
@@ -115,7 +115,6 @@ LengthError KnownLengths::of_thickness(const std::vector<float>& thickness) cons
 LengthError KnownLengths::of_crossing(const std::vector<float>& depth) const {
   LengthError error;
   if (hard_.solid.bodies.size() != 1) return error;
-  const double granted = granted_length(hard_);
   for (std::size_t pixel = 0; pixel < depth.size(); ++pixel) {
     const int column = static_cast<int>(pixel) % camera_.width;
     const int row = static_cast<int>(pixel) / camera_.width;
@@ -123,7 +122,7 @@ LengthError KnownLengths::of_crossing(const std::vector<float>& depth) const {
     double farthest = 0.0;  // of the rays that meet something
     bool missed = false;
     // An eye in the boundary may see it or not: the ray is let begin a little earlier and later.
-    for (const double later : {-granted, 0.0, granted}) {
+    for (const double later : {-granted_, 0.0, granted_}) {
       around(column, row, [&](Ray r) {
         r.origin += later * r.direction;
         const double found = hard_.solid.first_crossing(r) + later;

@@ -19,11 +19,11 @@ Parameters constant_density(Mode mode, double extinction);
 // layers.
 Parameters varying_density(Mode mode, const HardCase& hard);
 
-// Floats about a sample of half-diameter R carry depths to 2⁻²⁴ R each; this many of them are granted to the length
-// that is the difference of two, whatever its own size.
+// Floats about a sample of half-diameter R carry depths to 2⁻²⁴ R each; so many of them are granted to a length, which
+// is the difference of two, however short it is. Twice as many in perspective, where floats carry the reciprocal.
 inline constexpr double granted_roundings = 8.0;
 // Å: what is granted, of a length in this sample.
-double granted_length(const HardCase& hard);
+double granted_length(const HardCase& hard, Projection projection);
 
 // Rays of different renderers pass a little beside the pixel's centre. What is known of a pixel is therefore the range
 // over rays within `beside` pixels of its centre: a point wherever it is smooth; the outline's pixels, over which it
@@ -66,6 +66,7 @@ class KnownLengths {
   const HardCase& hard_;
   Camera camera_;
   double beside_;
+  double granted_;  // Å
   std::vector<Range> chords_;
 };
 

@@ -44,7 +44,8 @@ constexpr double fast_beside = std::max(1.01 * cell_projection::ray_shift, 0x1p-
 // The judge's pass by an infinitely small way, but the known answer is computed in double.
 constexpr double judge_beside = 0x1p-30;
 
-constexpr std::array<Integrator, 3> integrators{Integrator::exact, Integrator::linear, Integrator::preintegrated};
+constexpr std::array<Integrator, 4> integrators{Integrator::exact, Integrator::linear, Integrator::preintegrated,
+                                                Integrator::sampled};
 
 std::vector<std::string> kernels() {
   std::vector<std::string> names;
@@ -82,17 +83,17 @@ class HardCases : public testing::TestWithParam<int> {
  protected:
   const HardCase& hard() const { return catalogue()[static_cast<std::size_t>(GetParam())]; }
   void SetUp() override {
-    if (hard().inverted) GTEST_SKIP() << "nothing is known of it";
+    if (hard().known == HardCase::Known::nothing) GTEST_SKIP() << "nothing is known of it";
   }
 };
 
-constexpr int case_count = 30;
+constexpr int case_count = 31;
 
 TEST(HardCaseCatalogue, IsComplete) {
   EXPECT_EQ(catalogue().size(), case_count);
   for (const HardCase& hard : catalogue()) {
     EXPECT_FALSE(hard.views.empty()) << hard.name;
-    if (hard.inverted) continue;
+    if (hard.known == HardCase::Known::nothing) continue;
     EXPECT_EQ(validate(hard.material.mesh), std::vector<std::string>{}) << hard.name;
     EXPECT_EQ(validate(hard.material.surface, hard.material.mesh), std::vector<std::string>{}) << hard.name;
   }
@@ -102,7 +103,7 @@ TEST(HardCaseCatalogue, IsComplete) {
 TEST(HardCaseCatalogue, CellsFillTheSolid) {
   for (const HardCase& hard : catalogue()) {
     const TetMesh& mesh = hard.material.mesh;
-    if (hard.inverted || mesh.tetrahedra.size() > 2000) continue;
+    if (hard.known == HardCase::Known::nothing || mesh.tetrahedra.size() > 2000) continue;
     const Camera& camera = hard.views.front().camera;
     for (const double row : {7.3, 11.7, 15.2}) {
       for (const double column : {9.1, 14.6, 18.9}) {
@@ -118,12 +119,19 @@ TEST(HardCaseCatalogue, CellsFillTheSolid) {
   }
 }
 
+// The judge loses cells that an eye exactly on a vertex or an edge touches, and rays in a face that the eye is in.
+const std::vector<Short> judge_shorts{{"5³ cubes, eight of them missing", "the eye on a hole's corner", 1.0},
+                                      {"4³ cubes of six", "on a vertex", 1.0},
+                                      {"4³ cubes of six", "on a vertex, along an axis", 1.0},
+                                      {"4³ cubes of six", "on an edge", 1.0},
+                                      {"4³ cubes of six", "on an edge, along it", 1.0},
+                                      {"4³ cubes of six", "in a face, in its plane", 1.0},
+                                      {"4³ cubes of six", "on the hull's corner", 1.0},
+                                      {"4³ cubes of six", "on the hull's edge", 1.0},
+                                      {"a ball of 288 cells about one vertex", "on the vertex of all cells", 1.0},
+                                      {"64 cells about one edge", "on the edge of all cells, along it", 1.0}};
+
 TEST_P(HardCases, OpticalDepthIsTheLengthInside) {
-  // Where a ray runs inside cells much narrower than floats tell pixels apart.
-  static const std::vector<Short> shorts{
-      {"a layer 1e-6 Å high", "nearly along the layer", 4e-4},
-      {"a layer 1e-6 Å high", "in the layer's plane, perspective", 0.06},
-      {"a grid with gaps of 1e-6 along x and y: needles", "along z, in the gap", 0.7}};
   for (const HardView& view : hard().views) {
     const KnownLengths known(hard(), view.camera, fast_beside);
     for (const Mode mode : {Mode::volume, Mode::volume_surface}) {
@@ -135,7 +143,7 @@ TEST_P(HardCases, OpticalDepthIsTheLengthInside) {
           for (const std::string& kernel : kernels()) {
             cell_projection::set_kernel(kernel);
             const Image image = draw("cpu", scene, view.camera, parameters).image;
-            expect_length(known.of_optical_depth(extinction, image), allowed(shorts, hard(), view),
+            expect_length(known.of_optical_depth(extinction, image), limit,
                           hard().name + ", " + view.name + ", " + std::string(mode_name(mode)) + ", integrator " +
                               std::to_string(static_cast<int>(integrator)) + ", " + kernel + ", extinction " +
                               std::to_string(extinction));
@@ -148,24 +156,13 @@ TEST_P(HardCases, OpticalDepthIsTheLengthInside) {
 }
 
 TEST_P(HardCases, TheJudgesOpticalDepthIsTheLengthInside) {
-  // An eye exactly on a vertex or an edge: cells that it touches are lost.
-  static const std::vector<Short> shorts{{"5³ cubes, eight of them missing", "the eye on a hole's corner", 1.0},
-                                         {"4³ cubes of six", "on a vertex", 1.0},
-                                         {"4³ cubes of six", "on a vertex, along an axis", 1.0},
-                                         {"4³ cubes of six", "on an edge", 1.0},
-                                         {"4³ cubes of six", "on an edge, along it", 1.0},
-                                         {"4³ cubes of six", "in a face, in its plane", 1.0},
-                                         {"4³ cubes of six", "on the hull's corner", 1.0},
-                                         {"4³ cubes of six", "on the hull's edge", 1.0},
-                                         {"a ball of 288 cells about one vertex", "on the vertex of all cells", 1.0},
-                                         {"64 cells about one edge", "on the edge of all cells, along it", 1.0}};
   for (const HardView& view : hard().views) {
     const KnownLengths known(hard(), view.camera, judge_beside);
     for (const Mode mode : {Mode::volume, Mode::volume_surface}) {
       const Scene scene = make_scene(hard().material, constant_density(mode, 1.0));
       for (const double extinction : hard().extinctions) {
         const Image image = draw("reference", scene, view.camera, constant_density(mode, extinction)).image;
-        expect_length(known.of_optical_depth(extinction, image), allowed(shorts, hard(), view),
+        expect_length(known.of_optical_depth(extinction, image), allowed(judge_shorts, hard(), view),
                       hard().name + ", " + view.name + ", " + std::string(mode_name(mode)) + ", extinction " +
                           std::to_string(extinction));
       }
@@ -198,27 +195,17 @@ TEST_P(HardCases, DepthIsThatOfTheNearestCrossing) {
 }
 
 TEST_P(HardCases, VaryingValuesAreTheJudges) {
-  // Rays inside cells much narrower than floats tell pixels apart; the order of cells that overlap; and where the judge
-  // is short.
+  if (hard().known != HardCase::Known::values) GTEST_SKIP() << "which of its cells comes first nobody has laid down";
+  // Where rays run inside cells that are a hundred thousandth of a pixel wide, floats do not say where between its
+  // vertices' values, which differ by all there is.
   static const std::vector<Short> shorts{
-      {"a layer 1e-9 Å high", "nearly along the layer", 1e-4},
-      {"a layer 1e-6 Å high", "nearly along the layer", 2e-4},
-      {"a layer 1e-6 Å high", "in the layer's plane, perspective", 0.04},
-      {"a grid with gaps of 1e-6 along x and y: needles", "along z, in the gap", 0.06},
-      {"4³ cubes whose vertices went astray by up to 0.6", "oblique, parallel", 1e-3},
-      {"4³ cubes whose vertices went astray by up to 0.6", "oblique, perspective", 1e-3},
-      {"4³ cubes whose vertices went astray by up to 1.5", "oblique, parallel", 0.02},
-      {"4³ cubes whose vertices went astray by up to 1.5", "oblique, perspective", 0.02},
-      {"5³ cubes, eight of them missing", "the eye on a hole's corner", 1.0},
-      {"4³ cubes of six", "on a vertex", 1.0},
-      {"4³ cubes of six", "on a vertex, along an axis", 1.0},
-      {"4³ cubes of six", "on an edge", 1.0},
-      {"4³ cubes of six", "on an edge, along it", 1.0},
-      {"4³ cubes of six", "in a face, in its plane", 1.0},
-      {"4³ cubes of six", "on the hull's corner", 1.0},
-      {"4³ cubes of six", "on the hull's edge", 1.0},
-      {"a ball of 288 cells about one vertex", "on the vertex of all cells", 1.0},
-      {"64 cells about one edge", "on the edge of all cells, along it", 1.0}};
+      {"a layer 1e-6 Å high", "along the layer, in it", 0.1},
+      {"a layer 1e-6 Å high", "nearly along the layer", 2e-5},
+      {"a layer 1e-6 Å high", "in the layer's plane, perspective", 0.2},
+      {"a grid with gaps of 1e-6 along x and y: needles", "along z, in the gap", 0.02},
+      {"a grid with gaps of 1e-6 along x and y: needles", "along y, in the gap", 0.02},
+      {"a grid with gaps of 1e-6 along x: plates", "along z, in the gap", 0.02},
+      {"a grid with gaps of 1e-6 along x: plates", "along y, in the gap", 0.02}};
   for (const Mode mode : {Mode::volume, Mode::volume_surface}) {
     Parameters parameters = varying_density(mode, hard());
     const Scene scene = make_scene(hard().material, parameters);
@@ -227,7 +214,7 @@ TEST_P(HardCases, VaryingValuesAreTheJudges) {
       for (const std::string& kernel : kernels()) {
         cell_projection::set_kernel(kernel);
         const VariedError error = judge.error(draw("cpu", scene, view.camera, parameters).image);
-        EXPECT_LE(error.nearest, allowed(shorts, hard(), view))
+        EXPECT_LE(error.nearest, std::max(allowed(shorts, hard(), view), allowed(judge_shorts, hard(), view)))
             << hard().name << ", " << view.name << ", " << mode_name(mode) << ", " << kernel << ": at pixel "
             << error.column << ' ' << error.row << "; from the pixel's own centre " << error.centre;
       }
@@ -241,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::Range(0, case_count));
 // Cells turned inside out are no mesh of ours: they may be left out, but nothing else may happen.
 TEST(HardCaseCatalogue, CellsInsideOutDoNoHarm) {
   for (const HardCase& hard : catalogue()) {
-    if (!hard.inverted) continue;
+    if (hard.known != HardCase::Known::nothing) continue;
     for (const Mode mode : {Mode::volume, Mode::volume_surface, Mode::surface, Mode::xray}) {
       const Parameters parameters = varying_density(mode, hard);
       const Scene scene = make_scene(hard.material, parameters);
