@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "app/cli/bench_tools.h"
+#include "app/cli/read_mesh.h"
 #include "core/camera.h"
 #include "core/error.h"
 #include "core/surface.h"
@@ -35,11 +36,11 @@ std::vector<BenchSceneInfo> make_table() {
                                     {"lattice-100-random", "the same points, a random scalar at each", ""},
                                     {"comb", "NASA's annular combustor, density", "vtkdata__combxyz.bin"},
                                     {"blunt-fin", "NASA's blunt fin, density", "vtkdata__bluntfinxyz.bin"},
-                                    {"post", "NASA's liquid oxygen post, density", "vtkdata__postxyz.bin"},
-                                    {"usm3d-box", "USM3D's flow in a box", "usm3d_box.vtk"},
-                                    {"quake", "ground of the San Fernando valley (Quake)", "quake_sf10.vtk"},
-                                    {"chaste-cube", "Chaste's cube", "chaste__Cube21.node"},
-                                    {"raptor", "SOFA's raptor", "sofa__raptorTetra_8418.vtu"}};
+                                    {"post", "NASA's liquid oxygen post, energy", "vtkdata__postxyz.bin"},
+                                    {"usm3d-box", "USM3D's flow in a box, density", "usm3d_box.vtk"},
+                                    {"quake", "ground of the San Fernando valley (Quake), depth", "quake_sf10.vtk"},
+                                    {"chaste-cube", "Chaste's cube, waves", "chaste__Cube21.node"},
+                                    {"raptor", "SOFA's raptor, waves", "sofa__raptorTetra_8418.vtu"}};
   for (const SampleInfo& sample : sample_table()) {
     table.push_back({std::string(sample.name), std::string(sample.title), ""});
   }
@@ -131,12 +132,25 @@ Material sample_material(const std::string& name, std::size_t atoms, Progress& p
   return preprocess(file, {}, report, progress);
 }
 
-Material file_material(const BenchSceneInfo& info, const std::string& data_folder) {
+bool varies(const VertexField& field) {
+  return std::any_of(field.values.begin(), field.values.end(), [&](float v) { return v != field.values.front(); });
+}
+
+Material file_material(const BenchSceneInfo& info, const std::string& data_folder, Progress& progress) {
   const std::string path = (std::filesystem::path(volume_data_folder(data_folder)) / info.file).string();
   if (!std::filesystem::exists(path)) {
     throw UnavailableError(info.name + ": there is no " + path + "; --data names the folder of the public data sets");
   }
-  throw UnavailableError(info.name + ": this build does not read " + path);
+  MeshFileReport report;
+  Material material = read_mesh_file(path, {}, report, progress);
+  if (std::none_of(material.fields.begin(), material.fields.end(), varies)) {
+    const Bounds bounds = bounds_of(material.mesh.vertices);
+    VertexField& waves = material.fields.emplace_back(VertexField{"waves", {}});
+    for (const Vec3& p : material.mesh.vertices) {
+      waves.values.push_back(smooth_scalar(p - bounds.min, 0.6 * bounds.diagonal()));
+    }
+  }
+  return material;
 }
 
 }  // namespace
@@ -175,7 +189,8 @@ BenchScene make_bench_scene(const std::string& name, const std::string& data_fol
                                    nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?",
                                    fmt::join(names, ", ")));
     }
-    scene.material = info->file.empty() ? sample_material(name, atoms, progress) : file_material(*info, data_folder);
+    scene.material =
+        info->file.empty() ? sample_material(name, atoms, progress) : file_material(*info, data_folder, progress);
   }
   dress(scene);
   return scene;
