@@ -20,7 +20,7 @@ Vec4f over_background(const Vec3f& color, float opacity, const Vec4f& background
 
 }  // namespace
 
-Legend xray_legend(const XrayParameters& parameters, const Vec4f& background, double max_thickness) {
+Legend xray_legend(const XrayParameters& parameters, const Vec4f& background, double max_thickness, bool angstroms) {
   LegendScale scale;
   scale.max = max_thickness;
   scale.color = [parameters, background](double thickness) {
@@ -31,7 +31,7 @@ Legend xray_legend(const XrayParameters& parameters, const Vec4f& background, do
     scale.mark = 1.0 / parameters.alpha_length;
     scale.mark_text = rounded_text(*scale.mark, 3) + ": opaque";
   }
-  return {"thickness, Å", scale};
+  return {angstroms ? "thickness, Å" : "thickness", scale};
 }
 
 Legend color_map_legend(const ColorMap& map, const ShownScalar& scalar) {
@@ -90,7 +90,7 @@ std::optional<Legend> make_legend(const Scene& scene, const Material& material, 
       return color_map_legend(parameters.volume.color_map, {"defects / largest"});
     case Mode::xray:
       if (!(max_thickness > 0.0)) return std::nullopt;
-      return xray_legend(parameters.xray, parameters.background, max_thickness);
+      return xray_legend(parameters.xray, parameters.background, max_thickness, material.atoms.size() > 0);
     case Mode::atoms:
       return atoms_legend(scene, material.atoms);
     case Mode::surface:
@@ -103,7 +103,7 @@ double largest_possible_thickness(const Scene& scene) {
   return scene.bounds.diagonal();
 }
 
-std::optional<ScaleBar> make_scale_bar(const Camera& camera, const Vec3& center) {
+std::optional<ScaleBar> make_scale_bar(const Camera& camera, const Vec3& center, bool angstroms) {
   double pixel = camera.pixel;  // Å
   const bool perspective = camera.projection == Projection::perspective;
   if (perspective) pixel *= project(camera, center).z;
@@ -116,10 +116,12 @@ std::optional<ScaleBar> make_scale_bar(const Camera& camera, const Vec3& center)
     if (digit * power <= longest * (1.0 + 1e-12)) bar.length = digit * power;
   }
   bar.pixels = bar.length / pixel;
-  const auto text = [&](double angstroms, const char* unit) {
-    return rounded_text(bar.length / angstroms, 3) + " " + unit;
-  };
-  bar.text = bar.length < 99.0 ? text(1.0, "Å") : bar.length < 9999.0 ? text(10.0, "nm") : text(1e4, "µm");
+  const auto text = [&](double unit, const char* name) { return rounded_text(bar.length / unit, 3) + " " + name; };
+  if (!angstroms) {
+    bar.text = text(1.0, "units");
+  } else {
+    bar.text = bar.length < 99.0 ? text(1.0, "Å") : bar.length < 9999.0 ? text(10.0, "nm") : text(1e4, "µm");
+  }
   if (perspective) bar.text += " at center";
   return bar;
 }

@@ -40,8 +40,10 @@ struct Legend {
 };
 
 // From 0 to `max_thickness` (Å) the colours as they are drawn: opacity min(1, alpha_length · thickness) over the
-// picture's background, the thickness marked from which on it is 1.
-Legend xray_legend(const XrayParameters& parameters, const Vec4f& background, double max_thickness);
+// picture's background, the thickness marked from which on it is 1. A mesh without atoms is in a unit that its file
+// does not say: then without unit, here and below.
+Legend xray_legend(const XrayParameters& parameters, const Vec4f& background, double max_thickness,
+                   bool angstroms = true);
 
 // What the colour map's [0,1] stands for.
 struct ShownScalar {
@@ -74,10 +76,10 @@ double largest_possible_thickness(const Scene& scene);
 struct ScaleBar {
   double length = 0.0;  // Å
   double pixels = 0.0;
-  std::string text;  // "20 Å", "5 nm"; in perspective "20 Å at center"
+  std::string text;  // "20 Å", "5 nm", "5 units"; in perspective "20 Å at center"
 };
 // The longest that takes at most a fifth of the picture's width. In perspective it holds at the depth of `center` (Å,
 // in the file's coordinates); nothing where that is not in front of the eye.
-std::optional<ScaleBar> make_scale_bar(const Camera& camera, const Vec3& center);
+std::optional<ScaleBar> make_scale_bar(const Camera& camera, const Vec3& center, bool angstroms = true);
 
 }  // namespace atomesh

@@ -54,7 +54,7 @@ void PictureLegend::lay_out(const Scene& scene, const Material& material, const 
     }
   }
   if (options_.scale_bar) {
-    scale_bar_ = make_scale_bar(camera, scene.bounds.center());
+    scale_bar_ = make_scale_bar(camera, scene.bounds.center(), material.atoms.size() > 0);
     if (!scale_bar_) session.note("--scale-bar: the sample's center is not in front of the viewer");
   }
   drawing_.emplace(camera.width, camera.height, parameters.background, legend_, scale_bar_);

@@ -38,6 +38,8 @@ TEST(XrayLegend, HalfThicknessIsTheFormula) {
   const Legend over_nothing = xray_legend(parameters, Vec4f(0.0F), 80.0);
   EXPECT_LT(difference(over_nothing.scale->color(40.0), Vec4f(0.2F, 0.4F, 0.6F, 0.4F)), 1e-6);
   EXPECT_EQ(over_nothing.scale->color(0.0), Vec4f(0.0F));
+  EXPECT_EQ(over_white.title, "thickness, Å");
+  EXPECT_EQ(xray_legend(parameters, Vec4f(1.0F), 80.0, false).title, "thickness");
   EXPECT_EQ(over_white.scale->min, 0.0);
   EXPECT_EQ(over_white.scale->max, 80.0);
   EXPECT_FALSE(over_white.scale->mark) << "80 Å are not opaque";
@@ -167,6 +169,9 @@ TEST(ScaleBar, IsOfRoundLength) {
   EXPECT_EQ(text(0.6), "10 nm");
   EXPECT_EQ(text(2.6), "50 nm");
   EXPECT_EQ(text(55.0), "1 µm");
+  // The unit of a mesh file is its author's.
+  camera.pixel = 2.6;
+  EXPECT_EQ(make_scale_bar(camera, Vec3(0.0), false)->text, "500 units");
 }
 
 // Two points that far apart across the sample's centre are that many pixels apart.
