@@ -13,6 +13,7 @@
 #include "render/cpu/map_intervals.h"
 #include "render/cpu/surface_layers.h"
 #include "render/cpu/tile_bins.h"
+#include "render/cpu/uniform_medium.h"
 #include "render/shared/preintegration.h"
 
 namespace atomesh {
@@ -92,13 +93,19 @@ class CellProjectionFrame final : public Frame {
     grid_ = TileGrid(window);
     if (scene.tetrahedra.empty()) return;
     vertices_ = project_vertices(scene.vertices, scene.center, camera);
+    const UniformMedium medium = layered && alpha_length > 0.0 ? UniformMedium(scene) : UniformMedium();
     const bool all_visible = alpha_length > 0.0 && all_opaque();
-    bins_ = CellBins(alpha_length > 0.0 ? scene.tetrahedra.size() : 0, grid_, progress, [&](std::size_t cell) {
+    const bool none_visible = !(alpha_length > 0.0) || medium.everywhere();
+    bins_ = CellBins(none_visible ? 0 : scene.tetrahedra.size(), grid_, progress, [&](std::size_t cell) {
+      if (medium.holds(scene.tetrahedra[cell])) return PixelBox{};
       const PixelBox box = box_of(static_cast<Index>(cell));
       return box.empty() || all_visible || visible(cell) ? box : PixelBox{};
     });
-    if (optics_.layer_alpha > 0.0F) {
-      layers_ = std::make_unique<SurfaceLayers>(scene, camera, parameters, view_, vertices_, grid_, progress);
+    optics_.has_medium = medium.present();
+    for (int k = 0; k < 4; ++k) optics_.medium[k] = medium.color()[k];
+    if (optics_.layer_alpha > 0.0F || optics_.has_medium) {
+      layers_ = std::make_unique<SurfaceLayers>(scene, camera, parameters, view_, vertices_, grid_, optics_.has_medium,
+                                                progress);
       optics_.layer = layers_->shader();
     }
   }

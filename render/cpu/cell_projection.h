@@ -5,6 +5,9 @@
 // is nearer comes first. Rays pass 6e-8 of a pixel beside the pixel's centre (cell_projection_kernel.h says why). The
 // surface's layers, which are either met or not, are met by the rays of mode surface, 4e-9 of a pixel beside.
 //
+// Where most vertices have one colour (mode volume_surface; a crystal with few defects), cells that have only such
+// vertices are not projected: uniform_medium.h. Such a cell counts in RenderStats::steps with the stretch it is part of.
+//
 // Memory beyond the scene. For the frame: 33 bytes a vertex (6 bytes a tetrahedron of a Delaunay mesh), 4 bytes for
 // each tile of 32×32 pixels that a cell touches (of small cells 4 to 8 bytes a tetrahedron), in mode volume_surface as
 // much for each that a surface triangle touches, 512 bytes a tile; while it is prepared 12 bytes for each cell of a

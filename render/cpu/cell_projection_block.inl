@@ -241,7 +241,7 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   const bool sorted = cross_cells(view, block, pixels, scratch, count);
 
   const Integrator integrator(view, optics, block, pixels);
-  Layers layers(optics, block);
+  Layers layers(view, optics, block, integrator);
   std::uint64_t steps = 0;
   Light light;
   if (!sorted) {
@@ -259,6 +259,7 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   }
   layers.lay_rest(light);
   finish_opaque(light);
+  steps += layers.steps();
   alignas(64) float channels[4][lane_count];
   store(channels[0], light.red);
   store(channels[1], light.green);

@@ -20,6 +20,11 @@ class BlockOptics {
     extinction_ = length * Lanes(optics.alpha_length);
   }
 
+  // z - z_ref
+  Lanes relative_depth(const Lanes& u) const { return perspective_ ? reference_ * u * reciprocal(Lanes(1.0F) - u) : u; }
+  // alpha_length times the way per unit of depth
+  const Lanes& extinction() const { return extinction_; }
+
  protected:
   // Of a segment, u_in < u_out where there is one: its ends' depths from the cell's own, and alpha_length times the
   // way, zero where there is none (where the depths are finite all the same).
@@ -39,9 +44,7 @@ class BlockOptics {
   Pixels pixels_;
 
  private:
-  Lanes relative_depth(const Lanes& u) const { return perspective_ ? reference_ * u * reciprocal(Lanes(1.0F) - u) : u; }
-
-  Lanes extinction_;  // alpha_length times the way per unit of depth
+  Lanes extinction_;
   Lanes reference_;
   bool perspective_;
 };

@@ -118,11 +118,11 @@ struct MapInterval {
   float slope[4];
 };
 
-// Where a ray enters the surface.
+// Where a ray enters the surface, or leaves it.
 struct LayerHit {
-  double depth;  // Å
-  float u;       // its place among the cells: never behind the cell it is the front of
-  Index triangle;
+  double depth;    // Å
+  float u;         // its place among the cells: where the ray enters, never behind the cell it is the front of
+  Index triangle;  // no_index where it leaves
 };
 
 // Colour of the layer that the ray of a pixel (of the picture) hits.
@@ -141,6 +141,10 @@ struct CellOptics {
   int map_intervals;
   Shader layer;  // mode volume_surface; shade is nullptr elsewhere
   float layer_alpha;
+  // What the sample is filled with between the cells, wherever the surface says that a ray is inside. Then the layers'
+  // hits are those where rays leave, too.
+  bool has_medium;
+  float medium[4];  // RGBA
 };
 
 struct SetupInput {

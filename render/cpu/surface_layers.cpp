@@ -54,14 +54,16 @@ void TileLayers::sort() {
 }
 
 SurfaceLayers::SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view,
-                             const ProjectedVertices& vertices, const TileGrid& grid, const Progress& progress)
+                             const ProjectedVertices& vertices, const TileGrid& grid, bool exits,
+                             const Progress& progress)
     : scene_(scene),
       camera_(camera),
       view_(view),
       vertices_(vertices),
       shader_(scene, camera, parameters),
       margin_(0x1p-20 * scene.bounds.diagonal()),
-      grid_(grid) {
+      grid_(grid),
+      exits_(exits) {
   const bool perspective = camera.projection == Projection::perspective;
   const int left = grid.first_column * tile_side;
   const int top = grid.first_row * tile_side;
@@ -69,7 +71,7 @@ SurfaceLayers::SurfaceLayers(const Scene& scene, const Camera& camera, const Par
   const int height = grid.rows * tile_side;
   const auto box = [&](std::size_t t) {
     const Triangle& corners = scene.surface[t];
-    if (turned_away(vertices, corners, perspective)) return PixelBox{};
+    if (!exits && turned_away(vertices, corners, perspective)) return PixelBox{};
     const PixelBox whole = pixel_box(vertices, corners, camera.width, camera.height);
     return PixelBox{std::max(whole.first_column - left, 0), std::min(whole.last_column - left, width - 1),
                     std::max(whole.first_row - top, 0), std::min(whole.last_row - top, height - 1)};
@@ -86,7 +88,10 @@ void SurfaceLayers::find(std::size_t tile, const PixelLattice& lattice, TileLaye
   cross_triangles(
       scene_.surface, camera_, vertices_, bins_.of(tile), pixels, lattice,
       [&](int column, int row, Index triangle, const TriangleRaster& raster, const Crossing& crossing) {
-        if (!crossing.entering) return;
+        if (!crossing.entering) {
+          if (exits_) layers.add(rays.i_of(column), rays.j_of(row), {crossing.depth, u_of(crossing.depth), no_index});
+          return;
+        }
         const double beside = raster.plane_depth(view_.left + view_.pixel * column, view_.top - view_.pixel * row);
         layers.add(rays.i_of(column), rays.j_of(row), {crossing.depth, place(crossing.depth, beside), triangle});
       });
@@ -96,7 +101,11 @@ void SurfaceLayers::find(std::size_t tile, const PixelLattice& lattice, TileLaye
 float SurfaceLayers::place(double depth, double beside) const {
   const double nearer = (beside < depth ? beside : depth) - margin_;
   const double before = std::max(nearer, 0.5 * depth);
-  return static_cast<float>(view_.perspective ? 1.0 - view_.reference / before : before - view_.reference);
+  return u_of(before);
+}
+
+float SurfaceLayers::u_of(double depth) const {
+  return static_cast<float>(view_.perspective ? 1.0 - view_.reference / depth : depth - view_.reference);
 }
 
 void SurfaceLayers::shade(const void* layers, const LayerHit& hit, int column, int row, float* rgb) {

@@ -40,9 +40,9 @@ class TileLayers {
 
 class SurfaceLayers {
  public:
-  // Keeps references. Throws CancelledError.
+  // Keeps references. `exits` says whether it is also wanted where rays leave the surface. Throws CancelledError.
   SurfaceLayers(const Scene& scene, const Camera& camera, const Parameters& parameters, const View& view,
-                const ProjectedVertices& vertices, const TileGrid& grid, const Progress& progress);
+                const ProjectedVertices& vertices, const TileGrid& grid, bool exits, const Progress& progress);
 
   bool any_in(std::size_t tile) const { return !bins_.of(tile).empty(); }
   // The hits in front of the eye, of the lattice's pixels.
@@ -53,6 +53,7 @@ class SurfaceLayers {
   // The u of a layer at `depth`, so that no cell behind it seems to begin before it: it goes by where the cells' ray,
   // which passes a hair beside, meets the triangle's plane, and by more nearer than floats can be off.
   float place(double depth, double beside) const;
+  float u_of(double depth) const;
   static void shade(const void* layers, const LayerHit& hit, int column, int row, float* rgb);
 
   const Scene& scene_;
@@ -62,7 +63,8 @@ class SurfaceLayers {
   SurfaceShader shader_;
   double margin_;  // Å
   TileGrid grid_;
-  TileBins bins_;  // of the surface's triangles, without those that surely no ray enters by
+  bool exits_;
+  TileBins bins_;  // of the surface's triangles; where exits are not wanted, without those that surely no ray enters by
 };
 
 }  // namespace atomesh::cell_projection
