@@ -66,8 +66,10 @@ Camera make_camera(const Parameters& parameters, const Bounds& bounds, int width
   camera.right = std::cos(roll) * right - std::sin(roll) * up;
   camera.up = std::sin(roll) * right + std::cos(roll) * up;
 
-  // A sample of one atom (or none) still needs a picture of finite size.
-  const double radius = std::max(0.5 * bounds.diagonal(), 1.0);
+  // A sample of one point (or none) still needs a picture of finite size. Any other is shown whole and as large as it
+  // fits: a mesh may come in metres and be a thousandth of one.
+  const double half_diagonal = 0.5 * bounds.diagonal();
+  const double radius = half_diagonal > 0.0 ? half_diagonal : 1.0;
   const double half_angle = 0.5 * parameters.field_of_view * degree;
   const int shorter = std::max(1, std::min(width, height));
   const Vec3 target = bounds.center() + parameters.pan;

@@ -5,6 +5,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "app/cli/grid_seams.h"
 #include "app/cli/mesh_cells.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -59,8 +60,8 @@ class MeshBuilder {
 
   // ---- cells
 
-  // visit(cell, corners as points, block or nullptr, parity) for all cells with volume; corners of a polyhedron with
-  // the numbers of its faces.
+  // visit(cell, corners as points, odd) for all cells with volume; corners of a polyhedron with the numbers of its
+  // faces, `odd` for every other hexahedron of a block.
   template <class Visit>
   void for_each_cell(Visit&& visit) const {
     for (std::size_t c = 0; c < cells_.kinds.size(); ++c) {
@@ -221,7 +222,9 @@ class MeshBuilder {
     if (!is_polyhedron(cell)) {
       for (const std::uint64_t p : corners) vertices_.push_back(vertex_of_[p]);
       if (cells_.kinds.empty()) {
-        split_hexahedron(std::span<const Index, 8>(vertices_.data(), 8), odd ? 63 : 0, pieces);
+        const auto seam = seams_.find(cell);
+        const unsigned diagonals = seam != seams_.end() ? seam->second : odd ? 63U : 0U;
+        split_hexahedron(std::span<const Index, 8>(vertices_.data(), 8), diagonals, pieces);
       } else {
         split_cell(cells_.shapes[cell], vertices_, pieces);
       }
@@ -240,6 +243,7 @@ class MeshBuilder {
     std::vector<std::vector<double>> sums(cell_fields_.size(), std::vector<double>(vertices.size(), 0.0));
     std::vector<Index> touching(cell_fields_.empty() ? 0 : vertices.size(), 0);
     std::vector<Tetrahedron> pieces;
+    seams_ = seam_diagonals(cells_.blocks, vertex_of_, blanked_);
     for_each_cell([&](std::size_t cell, std::span<const std::uint64_t> corners, bool odd) {
       if (blanked_[cell]) return;
       pieces.clear();
@@ -252,7 +256,6 @@ class MeshBuilder {
         report_.turned += sign < 0 ? 1 : 0;
         if (sign < 0) std::swap(t[2], t[3]);
         m_.mesh.tetrahedra.push_back(t);
-        turned_.push_back(sign < 0);
       }
       if (cell_fields_.empty()) return;
       for_each_corner(cell, corners, [&](std::uint64_t p) {
@@ -275,41 +278,50 @@ class MeshBuilder {
   void separate_overlapping() {
     TetMesh& mesh = m_.mesh;
     constexpr std::uint8_t twin = 1, overlapping = 2;
-    std::vector<std::uint8_t> marks(mesh.tetrahedra.size(), 0);
-    const bool mostly_turned = 2 * report_.turned > mesh.tetrahedra.size();
+    const SharedFaces faces(mesh, progress_);
     const auto sense = [&](const FaceEntry& entry) {
       const Tetrahedron& t = mesh.tetrahedra[entry.tetrahedron];
       std::array<Index, 3> c{};
       for (std::size_t i = 0; i < 3; ++i) c[i] = t[static_cast<std::size_t>(face_corners[entry.face][i])];
       return ((c[0] < c[1] ? 1 : 0) + (c[1] < c[2] ? 1 : 0) + (c[2] < c[0] ? 1 : 0)) % 2 == 0;
     };
-    const auto corners = [&](const FaceEntry& entry) {
-      Tetrahedron t = mesh.tetrahedra[entry.tetrahedron];
-      std::sort(t.begin(), t.end());
-      return t;
-    };
-    {
-      const SharedFaces faces(mesh, progress_);
+    // visit(tetrahedra on one side of a face), where these are more than one.
+    const auto for_each_heap = [&](auto&& visit) {
       faces.for_each(
           [&](std::size_t, Index, std::span<const FaceEntry> sharing) {
             if (sharing.size() == 1 || (sharing.size() == 2 && sense(sharing[0]) != sense(sharing[1]))) return;
             for (const bool side : {false, true}) {
-              // One that is listed like most others stays in its place rather than one that folds back.
-              const FaceEntry* kept = nullptr;
+              std::vector<Index> heap;
               for (const FaceEntry& entry : sharing) {
-                const bool usual = turned_[entry.tetrahedron] == mostly_turned;
-                if (sense(entry) == side && (kept == nullptr || (usual && turned_[kept->tetrahedron] != mostly_turned)))
-                  kept = &entry;
+                if (sense(entry) == side) heap.push_back(entry.tetrahedron);
               }
-              for (const FaceEntry& entry : sharing) {
-                if (sense(entry) != side || &entry == kept) continue;
-                std::atomic_ref(marks[entry.tetrahedron])
-                    .fetch_or(corners(entry) == corners(*kept) ? twin : overlapping, std::memory_order_relaxed);
-              }
+              if (heap.size() > 1) visit(heap);
             }
           },
           progress_);
-    }
+    };
+    std::vector<Index> heaps(mesh.tetrahedra.size(), 0);  // that a tetrahedron is in
+    std::atomic<bool> any{false};
+    for_each_heap([&](const std::vector<Index>& heap) {
+      any = true;
+      for (const Index t : heap) std::atomic_ref(heaps[t]).fetch_add(1, std::memory_order_relaxed);
+    });
+    if (!any) return;
+    std::vector<std::uint8_t> marks(mesh.tetrahedra.size(), 0);
+    const auto corners = [&](Index t) {
+      Tetrahedron sorted = mesh.tetrahedra[t];
+      std::sort(sorted.begin(), sorted.end());
+      return sorted;
+    };
+    for_each_heap([&](const std::vector<Index>& heap) {
+      // One that folds back lies over most of its neighbours, each of which lies over it alone.
+      const Index kept = *std::min_element(
+          heap.begin(), heap.end(), [&](Index a, Index b) { return std::pair(heaps[a], a) < std::pair(heaps[b], b); });
+      for (const Index t : heap) {
+        if (t == kept) continue;
+        std::atomic_ref(marks[t]).fetch_or(corners(t) == corners(kept) ? twin : overlapping, std::memory_order_relaxed);
+      }
+    });
     std::vector<Tetrahedron> sound;
     sound.reserve(mesh.tetrahedra.size());
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -382,9 +394,9 @@ class MeshBuilder {
   std::vector<const VertexField*> point_fields_;
   std::vector<const VertexField*> cell_fields_;
   std::set<std::string> names_;
-  std::vector<Index> vertex_of_;  // points
-  std::vector<Index> vertices_;   // of the cell at hand
-  std::vector<bool> turned_;      // tetrahedra
+  std::vector<Index> vertex_of_;                       // points
+  std::unordered_map<std::uint64_t, unsigned> seams_;  // cells
+  std::vector<Index> vertices_;                        // of the cell at hand
   std::uint64_t merged_ = 0;
   std::uint64_t twins_ = 0;
   std::uint64_t overlapping_ = 0;

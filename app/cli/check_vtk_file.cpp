@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "app/cli/next_word.h"
 #include "core/error.h"
 #include "core/text_file.h"
 
@@ -20,15 +21,6 @@ bool same_word(std::string_view a, std::string_view upper) {
   return a.size() == upper.size() && std::equal(a.begin(), a.end(), upper.begin(), [](char x, char y) {
            return (x >= 'a' && x <= 'z' ? static_cast<char>(x - 'a' + 'A') : x) == y;
          });
-}
-
-// The next word, over ends of lines.
-std::string_view next_word(std::string_view& text) {
-  const std::size_t first = std::min(text.find_first_not_of(blanks), text.size());
-  const std::size_t last = std::min(text.find_first_of(blanks, first), text.size());
-  const std::string_view word = text.substr(first, last - first);
-  text.remove_prefix(last);
-  return word;
 }
 
 class LegacyCheck {

@@ -10,6 +10,7 @@
 #include "app/cli/session.h"
 #include "app/cli/text_table.h"
 #include "app/cli/write_vtu.h"
+#include "core/error.h"
 #include "preprocess/write_atoms.h"
 
 namespace atomesh::cli {
@@ -46,6 +47,9 @@ int run_convert(const ConvertArguments& arguments, const CLI::App& app, Session&
       arguments.input, {.atoms = true, .tetrahedra = !only_atoms, .surface = !only_atoms, .defects = defects}, app,
       arguments.options, session, arguments.mesh);
   const Material& material = loaded.material;
+  if (only_atoms && material.atoms.size() == 0) {
+    throw InputError(arguments.input, 0, "is a mesh without atoms; it can be converted to .crb, .crt and .vtu");
+  }
   session.progress().stage("write");
   if (extension == ".dat") {
     write_atoms(arguments.output, material.atoms, material.unit_cell, session.progress());
@@ -58,8 +62,9 @@ int run_convert(const ConvertArguments& arguments, const CLI::App& app, Session&
     write_material(arguments.output, material, {}, session.progress());
   }
   const auto bytes = std::filesystem::file_size(arguments.output);
-  session.print("{}: {} atoms{}, {}", arguments.output, grouped(material.atoms.size()),
-                only_atoms ? "" : fmt::format(", {} tetrahedra", grouped(material.mesh.tetrahedra.size())),
+  const std::string atoms = material.atoms.size() > 0 ? fmt::format("{} atoms", grouped(material.atoms.size())) : "";
+  const std::string mesh = only_atoms ? "" : fmt::format("{} tetrahedra", grouped(material.mesh.tetrahedra.size()));
+  session.print("{}: {}{}{}, {}", arguments.output, atoms, atoms.empty() || mesh.empty() ? "" : ", ", mesh,
                 byte_size(bytes));
   session.write_json(Json::object({{"input", arguments.input},
                                    {"atoms", material.atoms.size()},

@@ -151,6 +151,9 @@ int run_defects(const DefectsArguments& arguments, const CLI::App& app, Session&
       load_material(arguments.input, {.atoms = true, .tetrahedra = false, .surface = false, .defects = true}, app,
                     arguments.options, session);
   const Material& material = loaded.material;
+  if (material.atoms.size() == 0) {
+    throw InputError(arguments.input, 0, "is a mesh without atoms; defects are found from atoms");
+  }
   if (!material.defects.present()) {
     throw InputError(
         arguments.input, 0,

@@ -180,7 +180,7 @@ void reject_pipeline_options(const CLI::App& app, const std::string& path) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() > 0 && is_pipeline_option(*option)) {
       throw UsageError(option->get_name() + " has no effect on " + path +
-                       ", which is no atoms file; it is for preprocessing one");
+                       ", which is preprocessed already, or a mesh; give it when preprocessing an atoms file");
     }
   }
 }

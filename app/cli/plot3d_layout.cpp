@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "app/cli/next_word.h"
 #include "core/geometry.h"
 #include "core/text_file.h"
 
@@ -110,16 +111,8 @@ std::uint64_t end_of_solutions(std::string_view bytes, Plot3dLayout& layout) {
 
 std::size_t count_numbers(std::string_view text) {
   std::size_t count = 0;
-  for (std::string_view field = next_field(text); !field.empty(); field = next_field(text)) ++count;
+  while (!next_word(text).empty()) ++count;
   return count;
-}
-
-// next_field() stops at blanks of one line; Fortran's numbers go on over lines.
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return line;
 }
 
 bool looks_like_numbers(std::string_view bytes) {
@@ -130,7 +123,7 @@ bool looks_like_numbers(std::string_view bytes) {
 bool read_text_dimensions(std::string_view& rest, Plot3dLayout& layout) {
   const auto number = [&](std::uint64_t& n) {
     std::int64_t value = 0;
-    if (!parse_integer(next_field(rest), value) || value < 1) return false;
+    if (!parse_integer(next_word(rest), value) || value < 1) return false;
     n = static_cast<std::uint64_t>(value);
     return true;
   };
@@ -148,12 +141,11 @@ bool read_text_dimensions(std::string_view& rest, Plot3dLayout& layout) {
 }
 
 std::optional<Plot3dLayout> find_text_layout(std::string_view bytes) {
-  const std::string line = one_line(bytes);
   for (const bool multi_grid : {false, true}) {
     Plot3dLayout layout;
     layout.text = true;
     layout.multi_grid = multi_grid;
-    std::string_view rest = line;
+    std::string_view rest = bytes;
     if (!read_text_dimensions(rest, layout)) continue;
     std::uint64_t points = 0;
     for (const auto& grid : layout.grids) points += points_of(grid);
@@ -208,8 +200,7 @@ std::string plot3d_solution_problem(std::string_view bytes, const Plot3dLayout& 
   Plot3dLayout layout = grid;
   layout.grids.clear();
   if (grid.text) {
-    const std::string line = one_line(bytes);
-    std::string_view rest = line;
+    std::string_view rest = bytes;
     if (!looks_like_numbers(bytes) || !read_text_dimensions(rest, layout) || layout.grids != grid.grids) {
       return "expected a PLOT3D solution in text of the grid's " + dimensions + " points";
     }

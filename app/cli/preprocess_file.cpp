@@ -7,6 +7,7 @@
 
 #include "app/cli/load_material.h"
 #include "app/cli/machine.h"
+#include "app/cli/read_mesh.h"
 #include "app/cli/species_count.h"
 #include "app/cli/text_table.h"
 #include "core/error.h"
@@ -155,6 +156,11 @@ std::vector<std::pair<std::string, std::string>> recorded_options(const Preproce
 PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSettings& settings, Session& session) {
   if (is_material_file(job.input)) {
     throw UsageError(job.input + " is preprocessed already; atomesh convert changes its format");
+  }
+  if (is_mesh_file(job.input)) {
+    throw UsageError(job.input +
+                     " is a mesh, which needs no preprocessing; render it as it is, or use atomesh convert " +
+                     job.input + " OUT.crb");
   }
   const auto start = Clock::now();
   PreprocessedFile file;

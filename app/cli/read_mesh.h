@@ -33,9 +33,9 @@ bool is_mesh_file(const std::string& path);
 // A material without atoms: mesh, surface, and a field for each point scalar (of vectors their magnitude and
 // components; cell scalars averaged at the vertices). Hexahedra, voxels, wedges and pyramids are split into tetrahedra
 // so that neighbours agree on the diagonals of the faces they share: five to a hexahedron of a structured grid, turn
-// and turn about; elsewhere by the smallest vertex number (Dompierre et al. 1999, "How to subdivide pyramids, prisms
-// and hexahedra into tetrahedra"). mesh.delaunay is false. Throws InputError naming the file for anything damaged,
-// empty or not finite.
+// and turn about (six where a grid closes on itself out of turn); elsewhere by the smallest vertex number (Dompierre et
+// al. 1999, "How to subdivide pyramids, prisms and hexahedra into tetrahedra"). mesh.delaunay is false. Throws
+// InputError naming the file for anything damaged, empty or not finite.
 Material read_mesh_file(const std::string& path, const MeshFileOptions& options, MeshFileReport& report,
                         Progress& progress = no_progress());
 

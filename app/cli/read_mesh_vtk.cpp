@@ -7,6 +7,7 @@
 #include <vtkIdTypeArray.h>
 #include <vtkImageData.h>
 #include <vtkIntArray.h>
+#include <vtkLogger.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
@@ -67,11 +68,17 @@ class SilentWindow : public vtkOutputWindow {
 };
 vtkStandardNewMacro(SilentWindow);
 
-// VTK has one window for the whole program: ours while this lives.
+// VTK has one window and one log for the whole program: ours, and none, while this lives.
 class Silence {
  public:
-  Silence() : before_(vtkOutputWindow::GetInstance()) { vtkOutputWindow::SetInstance(window_); }
-  ~Silence() { vtkOutputWindow::SetInstance(before_); }
+  Silence() : before_(vtkOutputWindow::GetInstance()), verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
+    vtkOutputWindow::SetInstance(window_);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+  ~Silence() {
+    vtkOutputWindow::SetInstance(before_);
+    vtkLogger::SetStderrVerbosity(verbosity_);
+  }
   Silence(const Silence&) = delete;
   Silence& operator=(const Silence&) = delete;
   const SilentWindow& window() const { return *window_; }
@@ -79,6 +86,7 @@ class Silence {
  private:
   vtkNew<SilentWindow> window_;
   vtkSmartPointer<vtkOutputWindow> before_;
+  vtkLogger::Verbosity verbosity_;
 };
 
 // Runs a reader: cancellable, its complaints InputErrors.

@@ -9,6 +9,7 @@
 
 #include "app/cli/channel_files.h"
 #include "app/cli/commands.h"
+#include "app/cli/extinction_note.h"
 #include "app/cli/load_material.h"
 #include "app/cli/machine.h"
 #include "app/cli/output_file.h"
@@ -140,6 +141,10 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   const double scene_ms = elapsed_since(scene_start);
   if (scene.tetrahedra.empty() && scene.surface.empty() && scene.balls.empty()) {
     session.note(nothing_to_draw(loaded.material, parameters));
+  }
+  if (loaded.material.atoms.size() == 0) {
+    const std::string note = extinction_note(scene, parameters);
+    if (!note.empty()) session.note(note);
   }
   const Camera camera = make_camera(parameters, scene.bounds, width, height);
   RenderStats stats;

@@ -307,7 +307,7 @@ TEST_F(Subcommands, InfoSaysWhatIsThere) {
   expect_keys(crb, {"file", "kind", "version", "atoms", "tetrahedra", "triangles", "box", "species", "scalars",
                     "provenance", "valid"});
   EXPECT_EQ(crb["kind"], "crb");
-  EXPECT_EQ(crb["version"], 2);
+  EXPECT_EQ(crb["version"], 3);
   EXPECT_EQ(crb["valid"], true) << crb["problems"];
   EXPECT_EQ(crb["scalars"]["vacancy"].size(), 2U);
   EXPECT_EQ(crb["provenance"]["input"], "d.dat");
@@ -321,7 +321,7 @@ TEST_F(Subcommands, InfoSaysWhatIsThere) {
   ASSERT_EQ(run({"convert", "d.crb", "v2.crt"}).exit_code, 0);
   std::string text = place->read("v2.crt");
   ASSERT_EQ(text.find("\nsubstitutions"), std::string::npos);
-  ASSERT_TRUE(text.starts_with("atomesh-crt 2\n"));
+  ASSERT_TRUE(text.starts_with("atomesh-crt 3\n"));
   place->write("v1.crt", text.replace(0, 14, "atomesh-crt 1\n"));
   EXPECT_EQ(run_json({"info", "v2.crt"})["version"], 2);
   EXPECT_EQ(run_json({"info", "v1.crt"})["version"], 1);

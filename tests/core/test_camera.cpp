@@ -73,6 +73,27 @@ TEST(Camera, BoundingSphereFitsTheShorterSide) {
   }
 }
 
+// Whatever the unit: the same sample in another one fills the same picture.
+TEST(Camera, SmallAndLargeSamplesFillThePictureAlike) {
+  const Parameters parameters;
+  const Vec3 corner(0.9, 0.1, 1.0);
+  Bounds unit;
+  unit.add(Vec3(0.0));
+  unit.add(Vec3(1.0));
+  const Vec3 expected = project(make_camera(parameters, unit, 200, 100), corner);
+  for (const double scale : {1e-9, 1e-3, 1e9}) {
+    Bounds bounds;
+    bounds.add(Vec3(0.0));
+    bounds.add(Vec3(scale));
+    const Vec3 pixel = project(make_camera(parameters, bounds, 200, 100), scale * corner);
+    EXPECT_NEAR(pixel.x, expected.x, 1e-9) << scale;
+    EXPECT_NEAR(pixel.y, expected.y, 1e-9) << scale;
+  }
+  Bounds point;
+  point.add(Vec3(5.0));
+  EXPECT_GT(make_camera(parameters, point, 200, 100).pixel, 0.0);
+}
+
 TEST(Camera, UnknownViewNamesTheNearest) {
   Parameters parameters;
   try {
