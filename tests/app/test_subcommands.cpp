@@ -317,13 +317,13 @@ TEST_F(Subcommands, InfoSaysWhatIsThere) {
   EXPECT_TRUE(dat["version"].is_null());
   EXPECT_EQ(dat["tetrahedra"], crb["tetrahedra"]);
   EXPECT_NE(run({"info", "d.crb"}).out.find("valid"), std::string::npos);
-  // Without substitutions the text of version 2 is that of version 1.
-  ASSERT_EQ(run({"convert", "d.crb", "v2.crt"}).exit_code, 0);
-  std::string text = place->read("v2.crt");
+  // Without substitutions and fields the text of version 3 is that of version 1.
+  ASSERT_EQ(run({"convert", "d.crb", "v3.crt"}).exit_code, 0);
+  std::string text = place->read("v3.crt");
   ASSERT_EQ(text.find("\nsubstitutions"), std::string::npos);
   ASSERT_TRUE(text.starts_with("atomesh-crt 3\n"));
   place->write("v1.crt", text.replace(0, 14, "atomesh-crt 1\n"));
-  EXPECT_EQ(run_json({"info", "v2.crt"})["version"], 2);
+  EXPECT_EQ(run_json({"info", "v3.crt"})["version"], 3);
   EXPECT_EQ(run_json({"info", "v1.crt"})["version"], 1);
 }
 
