@@ -2,7 +2,7 @@
 // each intersected with sixteen rays at a time, ordered per block of 4×4 pixels and composed front to back.
 //
 // Any set of cells that do not overlap is drawn right, cyclic ones included; where cells overlap, the one whose entry
-// is nearer comes first. Rays pass 6e-8 of a pixel beside the pixel's centre (cell_projection_kernel.h says why). The
+// is nearer comes first. Rays pass 2.4e-7 of a pixel beside the pixel's centre (cell_projection_kernel.h says why). The
 // surface's layers, which are either met or not, are met by the rays of mode surface, 4e-9 of a pixel beside.
 //
 // Where most vertices have one colour (mode volume_surface; a crystal with few defects), cells that have only such

@@ -35,8 +35,8 @@ inline constexpr int block_pixels = block_side * block_side;
 
 // Rays pass this much of a pixel right of the pixel's centre, and ray_lift of that above it: then no ray of a picture
 // aligned with a crystal runs in a lattice plane or along a row of edges, where rounding would decide cell by cell.
-inline constexpr double ray_shift = 0x1p-24;
-inline constexpr double ray_lift = 0.15;
+inline constexpr double ray_shift = 0x1p-22;
+inline constexpr double ray_lift = 0x1p-5;
 
 // A ray that lets no more light through than this is finished.
 inline constexpr float opaque_enough = 0x1p-20F;
