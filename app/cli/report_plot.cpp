@@ -28,8 +28,9 @@ struct Shape {
   double first;
   double size;
 };
-constexpr std::array<Shape, 7> shapes{
-    {{0, 0, 1.0}, {4, 45, 1.2}, {3, -90, 1.35}, {4, 0, 1.3}, {3, 90, 1.35}, {5, -90, 1.2}, {6, 0, 1.1}}};
+// One fewer than colours: no pair of both comes back before the 43rd series.
+constexpr std::array<Shape, 6> shapes{
+    {{0, 0, 1.0}, {4, 45, 1.2}, {3, -90, 1.35}, {4, 0, 1.3}, {3, 90, 1.35}, {5, -90, 1.2}}};
 constexpr double marker_radius = 4.2;
 
 constexpr double tick_size = 12.0;

@@ -26,9 +26,9 @@ struct PlotPoint {
   std::string label{};  // written beside the point: "4 samples"
 };
 
-// One colour and one marker; both repeat after the seventh series. A point that is not finite is left out and breaks
-// the line. On a logarithmic axis values of 0 or below, an error that is exactly none for instance, stand hollow on the
-// axis' lower end, and a line below the plot says so.
+// One of seven colours with one of six markers; no series has the pair of another. A point that is not finite is left
+// out and breaks the line. On a logarithmic axis values of 0 or below, an error that is exactly none for instance,
+// stand hollow on the axis' lower end, and a line below the plot says so.
 struct PlotSeries {
   std::string name;  // in the legend
   std::vector<PlotPoint> points;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <regex>
+#include <set>
 
 #include "app/cli/report_html.h"
 #include "app/cli/report_markup.h"
@@ -102,6 +103,38 @@ TEST(Plot, ShowsEveryPoint) {
   EXPECT_EQ(count(svg, "<circle"), 6U);        // sampled: circles
   EXPECT_EQ(count(svg, "<polygon"), 2U + 3U);  // exact: a square; VTK: triangles
   EXPECT_EQ(count(svg, "stroke-linecap"), 4U + 1U);
+}
+
+// Each marker beside its name in the legend, told apart by colour or shape.
+TEST(Plot, ManySeriesLookDifferent) {
+  Plot plot{"many", "", {"x"}, {"y"}, {}};
+  for (int s = 0; s < 42; ++s) plot.series.push_back({"series", {}, false});
+  const std::string svg = plot_svg(plot);
+  static const std::regex marker("<(circle|polygon)[^>]*/>");
+  static const std::regex corner("[0-9.]+,[0-9.]+");
+  std::set<std::string> looks;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), marker), end; it != end; ++it) {
+    const std::string text = it->str();
+    const std::size_t fill = text.find("fill=");
+    // Colour, number of corners, and the way the first of them points from their middle.
+    std::vector<std::pair<double, double>> corners;
+    for (std::sregex_iterator c(text.begin(), text.end(), corner); c != end; ++c) {
+      const std::string pair = c->str();
+      corners.emplace_back(std::stod(pair), std::stod(pair.substr(pair.find(',') + 1)));
+    }
+    std::string direction;
+    if (!corners.empty()) {
+      double x = 0.0, y = 0.0;
+      for (const auto& [cx, cy] : corners) {
+        x += cx / static_cast<double>(corners.size());
+        y += cy / static_cast<double>(corners.size());
+      }
+      direction =
+          std::to_string(std::lround(corners[0].first - x)) + " " + std::to_string(std::lround(corners[0].second - y));
+    }
+    looks.insert(text.substr(fill, 14) + std::to_string(corners.size()) + " " + direction);
+  }
+  EXPECT_EQ(looks.size(), 42U);
 }
 
 TEST(Plot, ZeroOnALogarithmicAxisIsHollowAndSaid) {
