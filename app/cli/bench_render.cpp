@@ -3,13 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "app/cli/machine.h"
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace atomesh::cli {
 
 namespace {
+
+// ", which others used as well (load 7.3)": what is measured on the clock is then too long. "" on a quiet machine.
+std::string busy_machine() {
+  double load = 0.0;  // of the last minute, our own threads included
+  if (getloadavg(&load, 1) != 1 || load < threads() + 1.0) return "";
+  return fmt::format(", which others used as well (load {:.1f})", load);
+}
 
 constexpr std::size_t largest_kept = 2'000'000;  // tetrahedra
 
@@ -77,8 +86,8 @@ void bench_render(const RenderBenchOptions& options, Session& session, BenchResu
     session.print_text(result.text(first));  // minutes before the last part is done
   }
   BenchTable requirements = result.requirements();
-  requirements.caption += fmt::format(" {}. Commit {}. Made by `atomesh bench render{}`.", machine_name(),
-                                      build_commit(), options.full ? " --full" : "");
+  requirements.caption += fmt::format(" {}{}. Commit {}. Made by `atomesh bench render{}`.", machine_name(),
+                                      busy_machine(), build_commit(), options.full ? " --full" : "");
   result.tables.push_back(std::move(requirements));
   session.print_text(result.text(result.tables.size() - 1));
   // Who reads the file wants the outcome first.
