@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/cli/bench_error.h"
 #include "app/cli/bench_preprocess.h"
 #include "app/cli/bench_render.h"
 #include "app/cli/bench_seed_table.h"
@@ -32,7 +33,7 @@ struct BenchArguments {
 };
 
 const std::vector<std::string>& suite_names() {
-  static const std::vector<std::string> names{"seed-table", "preprocess", "render"};
+  static const std::vector<std::string> names{"seed-table", "preprocess", "render", "error"};
   return names;
 }
 
@@ -73,12 +74,12 @@ int run_bench(const BenchArguments& arguments, Session& session) {
     options.full = arguments.full;
     if (arguments.repeats > 0) options.repeats = arguments.repeats;
     bench_preprocess(options, session, result);
-  } else if (arguments.suite == "render") {
+  } else if (arguments.suite == "render" || arguments.suite == "error") {
     RenderBenchOptions options = arguments.render;
     options.parts = arguments.parts;
     options.full = arguments.full;
     if (arguments.repeats > 0) options.repeats = arguments.repeats;
-    bench_render(options, session, result);
+    (arguments.suite == "render" ? bench_render : bench_error)(options, session, result);
   } else {
     SeedTableOptions options = arguments.seed_table;
     options.atoms = arguments.atoms;
@@ -104,25 +105,28 @@ Command add_bench(CLI::App& app) {
   app.add_option("SUITE", arguments->suite,
                  "seed-table: preprocessing and the five modes on the ten samples, beside the seed's table 5.1; "
                  "preprocess: speed, memory and truth of preprocessing, beside CGAL, TetGen, VTK and LAMMPS; "
-                 "render: speed, errors and memory of pictures, beside VTK's volume mappers and the seed")
+                 "render: speed, errors and memory of pictures, beside VTK's volume mappers and the seed; "
+                 "error: speed against error of every integrator, errors of all data sets and modes, hard cases")
       ->required();
   app.add_option("--sample", seed_table.samples, "seed-table: only these samples; see atomesh sample --list")
       ->type_name("NAME…");
   app.add_option("--part", arguments->parts,
-                 fmt::format("Only these parts; preprocess: {}; render: {}", fmt::join(preprocess_bench_parts(), ", "),
-                             fmt::join(render_bench_parts(), ", ")))
+                 fmt::format("Only these parts; preprocess: {}; render: {}; error: {}",
+                             fmt::join(preprocess_bench_parts(), ", "), fmt::join(render_bench_parts(), ", "),
+                             fmt::join(error_bench_parts(), ", ")))
       ->type_name("NAME…");
-  app.add_flag("--full", arguments->full, "preprocess, render: every case, and the largest (about half an hour)");
-  app.add_option(
-         "--case", render.cases,
-         "render: only these data sets: a sample, lattice-N, lattice-N-random, comb, blunt-fin, post, usm3d-box, "
-         "quake, chaste-cube, raptor")
+  app.add_flag("--full", arguments->full,
+               "preprocess, render, error: every case, and the largest (about half an hour)");
+  app.add_option("--case", render.cases,
+                 "render, error: only these data sets: a sample, lattice-N, lattice-N-random, comb, blunt-fin, post, "
+                 "usm3d-box, "
+                 "quake, chaste-cube, raptor")
       ->type_name("NAME…");
-  app.add_option("--data", render.data, "render: folder of the public data sets [../shared/data/volume]")
+  app.add_option("--data", render.data, "render, error: folder of the public data sets [../shared/data/volume]")
       ->type_name("FOLDER");
-  app.add_flag("!--no-peers", render.peers, "render: without VTK's mappers");
+  app.add_flag("!--no-peers", render.peers, "render, error: without VTK's mappers");
   app.add_flag("!--no-z-sweep", render.z_sweep, "render: without the slowest of VTK's mappers");
-  app.add_flag("--quick", render.quick, "render: tiny data sets and pictures, to see that it works");
+  app.add_flag("--quick", render.quick, "render, error: tiny data sets and pictures, to see that it works");
   app.add_option_function<std::string>(
          "--atoms", [arguments](const std::string& text) { arguments->atoms = parse_count("--atoms", text); },
          "Atoms of each sample; 0: as many as the seed had, or as the part is defined for [0]")
@@ -133,9 +137,9 @@ Command add_bench(CLI::App& app) {
            std::tie(seed_table.width, seed_table.height) = parse_size(text);
            std::tie(render.width, render.height) = parse_size(text);
          },
-         "seed-table: pixels of the pictures [512x512]; render: of all [each part's own]")
+         "seed-table: pixels of the pictures [512x512]; render, error: of all [each part's own]")
       ->type_name("WxH");
-  app.add_option("--repeats", arguments->repeats, "Measured runs of each [seed-table: 3, preprocess: 1, render: 3]")
+  app.add_option("--repeats", arguments->repeats, "Measured runs of each [seed-table, render, error: 3, preprocess: 1]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app.add_option("--markdown", arguments->markdown, "Also write the tables as Markdown")->type_name("FILE.md");
@@ -145,7 +149,8 @@ Command add_bench(CLI::App& app) {
   app.footer(
       "Example:\n  atomesh bench seed-table --sample nacl-cracked --repeats 5 --json bench.json\n"
       "  atomesh bench preprocess --part tetrahedralize --markdown bench.md\n"
-      "  atomesh bench render --part peers --case comb --json bench.json\n");
+      "  atomesh bench render --part peers --case comb --json bench.json\n"
+      "  atomesh bench error --html error.html --svg pictures\n");
   return [arguments](Session& session) { return run_bench(*arguments, session); };
 }
 

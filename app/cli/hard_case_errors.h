@@ -25,6 +25,9 @@ inline constexpr double granted_roundings = 8.0;
 // Å: what is granted, of a length in this sample.
 double granted_length(const HardCase& hard, Projection projection);
 
+// Cell projection's: floats that count the pixels of a tile of 32.
+inline constexpr double fast_rays_beside = 0x1p-18;
+
 // Rays of different renderers pass a little beside the pixel's centre. What is known of a pixel is therefore the range
 // over rays within `beside` pixels of its centre: a point wherever it is smooth; the outline's pixels, over which it
 // jumps, are counted.

@@ -39,8 +39,8 @@ double allowed(const std::vector<Short>& shorts, const HardCase& hard, const Har
   return limit;
 }
 
-// How far cell projection's rays pass beside the pixel's centre, or what floats make of a place in a tile of 32 pixels.
-constexpr double fast_beside = std::max(1.01 * cell_projection::ray_shift, 0x1p-18);
+constexpr double fast_beside = fast_rays_beside;
+static_assert(fast_beside > cell_projection::ray_shift);
 // The judge's pass by an infinitely small way, but the known answer is computed in double.
 constexpr double judge_beside = 0x1p-30;
 
