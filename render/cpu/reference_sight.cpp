@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/predicates.h"
 #include "render/cpu/reference_exact.h"
 
 namespace atomesh::reference {
@@ -102,13 +103,67 @@ std::optional<Crossing> Sight::cross_triangle(const PixelRay& ray, const Triangl
   return locate(ray, triangle, first > 0);
 }
 
+bool Sight::touches_eye(const Tetrahedron& cell, std::array<bool, 4>& in_plane) const {
+  in_plane = {};
+  if (!perspective_ || std::all_of(cell.begin(), cell.end(), [this](Index v) { return view_[v].z > 0.0; }))
+    return false;
+  bool touched = false;
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto& corners = face_corners[f];
+    const Vec3& a = view_[cell[corners[0]]];
+    const Vec3& b = view_[cell[corners[1]]];
+    const Vec3& c = view_[cell[corners[2]]];
+    const int side = orientation(a, b, c, Vec3(0.0));
+    if (side != 0 && side != orientation(a, b, c, view_[cell[f]])) {  // outside
+      in_plane = {};
+      return false;
+    }
+    in_plane[f] = side == 0;
+    touched = touched || in_plane[f];
+  }
+  return touched;
+}
+
+// The edges' planes are the face's own, or for edges that the eye is on none at all.
+bool Sight::heads_inward(const PixelRay& ray, const Triangle& face) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (const int sign = side(ray, face[i], face[(i + 1) % 3]); sign != 0) return sign > 0;
+  }
+  return false;
+}
+
+std::array<double, 4> Sight::weights_of_eye(const Tetrahedron& cell) const {
+  std::array<double, 4> weights{};
+  double sum = 0.0;
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto& corners = face_corners[f];
+    weights[f] =
+        std::abs(glm::dot(view_[cell[corners[0]]], glm::cross(view_[cell[corners[1]]], view_[cell[corners[2]]])));
+    sum += weights[f];
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
 std::optional<CellSegment> Sight::cross_cell(const PixelRay& ray, const Tetrahedron& cell) const {
   CellSegment segment;
   bool found_near = false;
   bool found_far = false;
-  for (int f = 0; f < 4; ++f) {
-    const auto& corners = face_corners[static_cast<std::size_t>(f)];
-    const auto crossing = cross_triangle(ray, {cell[corners[0]], cell[corners[1]], cell[corners[2]]});
+  // Faces through the eye are lines in the picture, and where the ray meets them is the eye itself.
+  std::array<bool, 4> in_plane{};
+  if (touches_eye(cell, in_plane)) {
+    found_near = true;
+    segment.near_depth = 0.0;
+    segment.near_weights = weights_of_eye(cell);
+  }
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto& corners = face_corners[f];
+    const Triangle face{cell[corners[0]], cell[corners[1]], cell[corners[2]]};
+    if (in_plane[f]) {
+      if (!heads_inward(ray, face)) return std::nullopt;
+      continue;
+    }
+    const auto crossing = cross_triangle(ray, face);
     if (!crossing) continue;
     std::array<double, 4> weights{};
     for (int i = 0; i < 3; ++i) weights[corners[i]] = crossing->weights[i];

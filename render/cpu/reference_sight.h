@@ -69,6 +69,12 @@ class Sight {
   double image_area(const PixelRay& ray, const Vec3& p, const Vec3& q) const;
   int side(const PixelRay& ray, Index a, Index b) const;
   Crossing locate(const PixelRay& ray, const Triangle& triangle, bool entering) const;
+  // Whether the eye lies exactly on the cell's boundary (on a vertex, on an edge, in a face), and then in the planes of
+  // which faces.
+  bool touches_eye(const Tetrahedron& cell, std::array<bool, 4>& in_plane) const;
+  // Whether the ray leads inward through a face that the eye lies in.
+  bool heads_inward(const PixelRay& ray, const Triangle& face) const;
+  std::array<double, 4> weights_of_eye(const Tetrahedron& cell) const;
   Extent extent_of_points(const Vec3* points, int count) const;
 
   Camera camera_;
