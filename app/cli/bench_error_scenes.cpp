@@ -12,6 +12,7 @@ namespace atomesh::cli {
 namespace {
 
 constexpr std::size_t sample_atoms = 20000;
+constexpr std::size_t quick_sample_atoms = 5000;
 
 class SceneErrors {
  public:
@@ -38,7 +39,7 @@ class SceneErrors {
             std::move(table_),
             fmt::format("One run each. Samples of about {} atoms. Surface and xray have no integrator: their closed "
                         "form is the only one.",
-                        bench_.options.quick ? 2000 : sample_atoms),
+                        bench_.options.quick ? quick_sample_atoms : sample_atoms),
             {}};
   }
 
@@ -88,7 +89,7 @@ void bench_error_scenes(RenderBench& bench) {
   for (const std::string& name : bench.cases(all_scenes(bench.options.full))) {
     bench.session.progress().stage(name);
     try {
-      errors.measure(make_bench_scene(name, bench.options.data, bench.options.quick ? 2000 : sample_atoms,
+      errors.measure(make_bench_scene(name, bench.options.data, bench.options.quick ? quick_sample_atoms : sample_atoms,
                                       bench.session.progress()));
     } catch (const UnavailableError& error) {
       bench.session.note(error.what());
