@@ -1,6 +1,8 @@
 // Pictures: float channels, PNG files, and the comparison of two.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,16 +30,38 @@ struct Image {
   }
 };
 
-// 8-bit RGB, or RGBA where a pixel is not opaque, channels rounded to the nearest of 256; `text` becomes iTXt chunks
-// (the parameters that made the picture). Written beside and renamed. Throws Error when it cannot be written.
-void write_png(const std::string& path, const Image& image,
-               const std::vector<std::pair<std::string, std::string>>& text = {}, Progress& progress = no_progress());
+// Keys and texts that a PNG carries as iTXt chunks (the parameters that made the picture), UTF-8.
+using PngText = std::vector<std::pair<std::string, std::string>>;
+
+// A PNG of 8-bit RGB (`opaque`) or RGBA written row by row, from the top, so that pictures larger than memory can be
+// written; channels are rounded to the nearest of 256. Written beside and renamed by finish(); without it, nothing is
+// left. Everything throws Error when it cannot be done.
+class PngWriter {
+ public:
+  // Each side 1 to 65535 pixels, keys of 1 to 79 characters, no NUL in keys and texts.
+  PngWriter(const std::string& path, int width, int height, bool opaque, const PngText& text = {});
+  ~PngWriter();
+  PngWriter(PngWriter&&) noexcept;
+
+  // The next rows, whole. Throws CancelledError, after which the writer can only be thrown away.
+  void write_rows(std::span<const Vec4f> pixels, const Progress& progress = no_progress());
+  // After all rows.
+  void finish();
+
+ private:
+  class File;
+  std::unique_ptr<File> file_;
+};
+
+// A whole picture: RGB, or RGBA where a pixel is not opaque.
+void write_png(const std::string& path, const Image& image, const PngText& text = {},
+               Progress& progress = no_progress());
 // Any PNG of 8 or 16 bits, gray, palette or colour. Throws InputError for anything else, truncated or damaged files.
 Image read_png(const std::string& path);
 // The same from bytes in memory; `name` stands for the file in messages.
 Image parse_png(std::string_view bytes, const std::string& name);
 // The texts of a PNG, in file order. Throws InputError as read_png does.
-std::vector<std::pair<std::string, std::string>> read_png_text(const std::string& path);
+PngText read_png_text(const std::string& path);
 
 struct ImageDifference {
   double max = 0.0;             // largest absolute channel difference, channels in [0,1]

@@ -1,5 +1,6 @@
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -9,7 +10,7 @@
 #include "core/text_file.h"
 
 // libpng reports errors by longjmp, which must not cross a C++ object with a destructor. Every function that calls it
-// therefore holds only plain data and references: what owns memory (PngReader, PngWriter, the vectors) lives in the
+// therefore holds only plain data and references: what owns memory (PngReader, PngStream, the vectors) lives in the
 // caller's frame, outside the setjmp.
 
 namespace atomesh {
@@ -126,12 +127,12 @@ std::vector<png_byte> read_all(PngReader& reader, std::string_view bytes, const 
 
 // ---- writing
 
-struct PngWriter {
+struct PngStream {
   Complaint complaint;
   png_structp png = nullptr;
   png_infop info = nullptr;
 
-  PngWriter() {
+  PngStream() {
     png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, keep_message, ignore_warning);
     if (png != nullptr) info = png_create_info_struct(png);
     if (info == nullptr) {
@@ -139,24 +140,32 @@ struct PngWriter {
       throw UnavailableError("libpng could not be started (out of memory)");
     }
   }
-  ~PngWriter() { png_destroy_write_struct(&png, &info); }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
+  ~PngStream() { png_destroy_write_struct(&png, &info); }
+  PngStream(const PngStream&) = delete;
+  PngStream& operator=(const PngStream&) = delete;
 };
 
-bool write_all(PngWriter& writer, std::FILE* stream, int width, int height, int color_type, png_textp text,
-               int text_count, png_bytepp rows, Progress& progress) {
-  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
-  png_init_io(writer.png, stream);
-  png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-               color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  if (text_count > 0) png_set_text(writer.png, writer.info, text, text_count);
-  png_write_info(writer.png, writer.info);
-  for (int y = 0; y < height; ++y) {
-    progress.check();  // throws from here, where no frame of libpng is on the stack
-    png_write_row(writer.png, rows[y]);
-  }
-  png_write_end(writer.png, writer.info);
+// Each of these: false after an error.
+bool write_header(PngStream& to, std::FILE* file, int width, int height, bool opaque, png_textp text, int text_count) {
+  if (setjmp(png_jmpbuf(to.png)) != 0) return false;
+  png_init_io(to.png, file);
+  png_set_IHDR(to.png, to.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
+               opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  if (text_count > 0) png_set_text(to.png, to.info, text, text_count);
+  png_write_info(to.png, to.info);
+  return true;
+}
+
+bool write_row(PngStream& to, png_const_bytep row) {
+  if (setjmp(png_jmpbuf(to.png)) != 0) return false;
+  png_write_row(to.png, row);
+  return true;
+}
+
+bool write_end(PngStream& to) {
+  if (setjmp(png_jmpbuf(to.png)) != 0) return false;
+  png_write_end(to.png, to.info);
   return true;
 }
 
@@ -165,55 +174,105 @@ png_byte to_byte(float channel) {
   return channel > 0.0F ? static_cast<png_byte>(std::lround(std::min(channel, 1.0F) * 255.0F)) : png_byte{0};
 }
 
-}  // namespace
+void check_size(const std::string& path, int width, int height) {
+  if (width >= 1 && height >= 1 && width <= largest_side && height <= largest_side) return;
+  throw Error(path + ": a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+              " pixels cannot be written as PNG (each side 1 to 65535)");
+}
 
-void write_png(const std::string& path, const Image& image,
-               const std::vector<std::pair<std::string, std::string>>& text, Progress& progress) {
-  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side) {
-    throw Error(path + ": a picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
-                " pixels cannot be written as PNG (each side 1 to 65535)");
-  }
+void check_text(const std::string& path, const PngText& text) {
   for (const auto& [key, value] : text) {
     if (key.empty() || key.size() > 79 || key.find('\0') != std::string::npos ||
         value.find('\0') != std::string::npos) {
       throw Error(path + ": \"" + key + "\" cannot be a PNG text key (1 to 79 characters, no NUL in it or its text)");
     }
   }
-  std::vector<png_byte> data(image.pixels.size() * 4);
-  bool opaque = true;
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    if (i % 65536 == 0) progress.check();
-    for (int c = 0; c < 4; ++c) data[4 * i + static_cast<std::size_t>(c)] = to_byte(image.pixels[i][c]);
-    opaque = opaque && data[4 * i + 3] == 255;
+}
+
+}  // namespace
+
+class PngWriter::File {
+ public:
+  // libpng asks for texts it might change.
+  File(const std::string& path, int width, int height, bool opaque, PngText text)
+      : path_(path), channels_(opaque ? 3 : 4), width_(width), rows_left_(height), file_(path) {
+    std::vector<png_text> chunks(text.size());
+    char no_language[] = "";
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      chunks[i] = png_text{};
+      chunks[i].compression = PNG_ITXT_COMPRESSION_NONE;  // iTXt: UTF-8
+      chunks[i].key = text[i].first.data();
+      chunks[i].text = text[i].second.data();
+      chunks[i].itxt_length = text[i].second.size();
+      chunks[i].lang = no_language;
+      chunks[i].lang_key = no_language;
+    }
+    check(write_header(stream_, file_.stream(), width, height, opaque, chunks.data(), static_cast<int>(chunks.size())));
   }
-  std::size_t channels = 4;
-  if (opaque) {
-    channels = 3;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) std::memmove(&data[3 * i], &data[4 * i], 3);
+
+  void write_rows(std::span<const Vec4f> pixels, const Progress& progress) {
+    const auto width = static_cast<std::size_t>(width_);
+    const std::size_t rows = pixels.size() / width;
+    if (rows * width != pixels.size() || rows > static_cast<std::size_t>(rows_left_)) {
+      throw Error(path_ + ": " + std::to_string(pixels.size()) +
+                  " pixels are no whole rows of the picture, or too many");
+    }
+    bytes_.resize(width * channels_);
+    for (std::size_t row = 0; row < rows; ++row) {
+      progress.check();  // throws from here, where no frame of libpng is on the stack
+      png_byte* byte = bytes_.data();
+      for (const Vec4f& pixel : pixels.subspan(row * width, width)) {
+        for (std::size_t c = 0; c < channels_; ++c) *byte++ = to_byte(pixel[static_cast<int>(c)]);
+      }
+      check(write_row(stream_, bytes_.data()));
+    }
+    rows_left_ -= static_cast<int>(rows);
   }
-  std::vector<png_bytep> rows(static_cast<std::size_t>(image.height));
-  for (std::size_t y = 0; y < rows.size(); ++y) {
-    rows[y] = data.data() + y * static_cast<std::size_t>(image.width) * channels;
+
+  void finish() {
+    if (rows_left_ != 0) throw Error(path_ + ": " + std::to_string(rows_left_) + " rows of the picture are missing");
+    check(write_end(stream_));
+    file_.commit();
   }
-  std::vector<png_text> chunks(text.size());
-  std::vector<std::pair<std::string, std::string>> owned = text;  // libpng asks for pointers to non-const
-  char no_language[] = "";
-  for (std::size_t i = 0; i < owned.size(); ++i) {
-    chunks[i] = png_text{};
-    chunks[i].compression = PNG_ITXT_COMPRESSION_NONE;  // iTXt: UTF-8
-    chunks[i].key = owned[i].first.data();
-    chunks[i].text = owned[i].second.data();
-    chunks[i].itxt_length = owned[i].second.size();
-    chunks[i].lang = no_language;
-    chunks[i].lang_key = no_language;
+
+ private:
+  void check(bool done) const {
+    if (!done) throw Error(path_ + ": the PNG cannot be written: " + stream_.complaint.text);
   }
-  AtomicFile file(path);
-  PngWriter writer;
-  if (!write_all(writer, file.stream(), image.width, image.height, opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA,
-                 chunks.data(), static_cast<int>(chunks.size()), rows.data(), progress)) {
-    throw Error(path + ": the PNG cannot be written: " + writer.complaint.text);
-  }
-  file.commit();
+
+  std::string path_;
+  std::size_t channels_;
+  int width_;
+  int rows_left_;
+  AtomicFile file_;
+  PngStream stream_;
+  std::vector<png_byte> bytes_;  // of one row
+};
+
+PngWriter::PngWriter(const std::string& path, int width, int height, bool opaque, const PngText& text) {
+  check_size(path, width, height);
+  check_text(path, text);
+  file_ = std::make_unique<File>(path, width, height, opaque, text);
+}
+
+PngWriter::~PngWriter() = default;
+PngWriter::PngWriter(PngWriter&&) noexcept = default;
+
+void PngWriter::write_rows(std::span<const Vec4f> pixels, const Progress& progress) {
+  file_->write_rows(pixels, progress);
+}
+
+void PngWriter::finish() {
+  file_->finish();
+}
+
+void write_png(const std::string& path, const Image& image, const PngText& text, Progress& progress) {
+  check_size(path, image.width, image.height);
+  const bool opaque =
+      std::all_of(image.pixels.begin(), image.pixels.end(), [](const Vec4f& pixel) { return to_byte(pixel.a) == 255; });
+  PngWriter writer(path, image.width, image.height, opaque, text);
+  writer.write_rows(image.pixels, progress);
+  writer.finish();
 }
 
 Image read_png(const std::string& path) {
@@ -236,7 +295,7 @@ Image parse_png(std::string_view bytes, const std::string& name) {
   return image;
 }
 
-std::vector<std::pair<std::string, std::string>> read_png_text(const std::string& path) {
+PngText read_png_text(const std::string& path) {
   const MappedFile file(path);
   PngReader reader;
   int width = 0;
@@ -245,7 +304,7 @@ std::vector<std::pair<std::string, std::string>> read_png_text(const std::string
   png_textp chunks = nullptr;
   int count = 0;
   png_get_text(reader.png, reader.info, &chunks, &count);
-  std::vector<std::pair<std::string, std::string>> text;
+  PngText text;
   for (int i = 0; i < count; ++i) {
     const png_text& chunk = chunks[i];
     const std::size_t length = chunk.compression >= PNG_ITXT_COMPRESSION_NONE ? chunk.itxt_length : chunk.text_length;

@@ -4,6 +4,17 @@
 
 namespace atomesh {
 
+Progress::Progress(Progress& whole, double begin, double end, Clock::time_point deadline)
+    : listener_(
+          [&whole, begin, end](std::string_view, double fraction) { whole.update(begin + fraction * (end - begin)); }),
+      whole_(&whole),
+      deadline_(deadline) {}
+
+bool Progress::cancelled() const noexcept {
+  if (cancel_.load(std::memory_order_relaxed) || (whole_ != nullptr && whole_->cancelled())) return true;
+  return deadline_ != Clock::time_point::max() && Clock::now() >= deadline_;
+}
+
 void Progress::stage(std::string_view name) {
   check();
   stage_ = name;

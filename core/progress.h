@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,11 @@ class Progress {
 
   Progress() = default;
   explicit Progress(Listener listener) : listener_(std::move(listener)) {}
+  // Follows a part of what `whole` follows: fractions from 0 to 1 become `whole`'s from `begin` to `end`, and stages
+  // are not named again. It is cancelled when `whole` is, when asked to itself, and once the clock reaches `deadline`.
+  // `whole` must outlive it.
+  using Clock = std::chrono::steady_clock;
+  Progress(Progress& whole, double begin, double end, Clock::time_point deadline = Clock::time_point::max());
 
   // Starts a stage; throws CancelledError when a cancel was requested.
   void stage(std::string_view name);
@@ -27,7 +33,7 @@ class Progress {
   void check() const;
 
   void request_cancel() noexcept { cancel_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const noexcept { return cancel_.load(std::memory_order_relaxed); }
+  bool cancelled() const noexcept;
   const std::string& stage_name() const { return stage_; }
 
  private:
@@ -35,6 +41,8 @@ class Progress {
   std::string stage_;
   double reported_ = -1.0;
   std::atomic<bool> cancel_{false};
+  const Progress* whole_ = nullptr;
+  Clock::time_point deadline_ = Clock::time_point::max();
 };
 
 // For callers that do not follow the work.

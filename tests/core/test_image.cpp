@@ -167,6 +167,43 @@ TEST(Png, EveryFlippedBitIsReadTheSameOrAnInputError) {
   EXPECT_GT(refused, bytes.size() * 4);
 }
 
+TEST(PngWriter, RowsInPortionsAreTheWholePicture) {
+  const TemporaryFolder folder;
+  for (const bool opaque : {true, false}) {
+    const Image image = random_image(13, 29, opaque);
+    const PngText text{{"key", "värde"}};
+    write_png(folder.file("whole.png"), image, text);
+    PngWriter writer(folder.file("rows.png"), 13, 29, opaque, text);
+    const std::span<const Vec4f> pixels(image.pixels);
+    std::size_t row = 0;
+    for (const std::size_t rows : {1, 0, 20, 8}) {
+      writer.write_rows(pixels.subspan(13 * row, 13 * rows));
+      row += rows;
+    }
+    writer.finish();
+    EXPECT_EQ(read_bytes(folder.file("rows.png")), read_bytes(folder.file("whole.png")));
+  }
+}
+
+TEST(PngWriter, WhatIsNotFinishedLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::vector<Vec4f> row(7);
+  {
+    PngWriter writer(folder.file("a.png"), 7, 3, false);
+    writer.write_rows(row);
+    EXPECT_THROW(writer.write_rows(std::span(row).first(6)), Error);  // no whole row
+    EXPECT_THROW(writer.write_rows(std::vector<Vec4f>(21)), Error);   // more than are left
+    EXPECT_THROW(writer.finish(), Error);                             // two rows are missing
+    Progress cancelled;
+    cancelled.request_cancel();
+    EXPECT_THROW(writer.write_rows(row, cancelled), CancelledError);
+  }
+  EXPECT_EQ(folder.count(), 0U);
+  EXPECT_THROW(PngWriter(folder.file("a.png"), 65536, 1, true), Error);
+  EXPECT_THROW(PngWriter(folder.file("a.png"), 1, 0, true), Error);
+  EXPECT_EQ(folder.count(), 0U);
+}
+
 TEST(Png, WritingCanBeCancelledAndLeavesNothing) {
   const test::TemporaryFolder folder;
   Progress progress;

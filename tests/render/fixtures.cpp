@@ -136,6 +136,18 @@ Camera nudged(const Camera& camera, double columns, double rows) {
   return moved;
 }
 
+Subject shaken_box(Mode mode, Projection projection, int width, int height) {
+  Subject subject;
+  subject.material = box_material(3, 4, 3, 2.0, shaking(0.3, 5));
+  add_defects(subject.material, 3);
+  subject.parameters = looking(mode, "iso", projection);
+  subject.parameters.volume_surface.face_alpha = 0.4;
+  subject.parameters.atoms.regular_opacity = 0.5;
+  subject.scene = make_scene(subject.material, subject.parameters);
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, width, height);
+  return subject;
+}
+
 Drawn draw(const Renderer& renderer, const Scene& scene, const Camera& camera, const Parameters& parameters) {
   Drawn drawn;
   const Channels channels{&drawn.thickness, &drawn.depth, &drawn.id};

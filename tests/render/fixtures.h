@@ -34,6 +34,17 @@ Parameters looking(Mode mode, std::string_view view, Projection projection = Pro
 // The same view with every ray moved right and up by fractions of a pixel.
 Camera nudged(const Camera& camera, double columns, double rows);
 
+inline constexpr Mode all_modes[] = {Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
+
+// A shaken box with defects, seen aslant, ready to be drawn in a mode; layers and balls half transparent.
+struct Subject {
+  Material material;
+  Parameters parameters;
+  Scene scene;
+  Camera camera;
+};
+Subject shaken_box(Mode mode, Projection projection, int width, int height);
+
 struct Drawn {
   Image image;  // premultiplied, without background
   RenderStats stats;

@@ -13,26 +13,6 @@ namespace {
 
 using namespace test;
 
-constexpr Mode all_modes[] = {Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
-
-struct Subject {
-  Material material;
-  Parameters parameters;
-  Scene scene;
-  Camera camera;
-};
-
-// A shaken box with defects, filling the picture and more, seen aslant.
-void set_subject(Subject& subject, Mode mode, Projection projection, int width, int height) {
-  subject.material = box_material(3, 4, 3, 2.0, shaking(0.3, 5));
-  add_defects(subject.material, 3);
-  subject.parameters = looking(mode, "iso", projection);
-  subject.parameters.volume_surface.face_alpha = 0.4;
-  subject.parameters.atoms.regular_opacity = 0.5;
-  subject.scene = make_scene(subject.material, subject.parameters);
-  subject.camera = make_camera(subject.parameters, subject.scene.bounds, width, height);
-}
-
 std::string describe(const std::string& renderer, Mode mode, const PixelWindow& window, const PixelLattice& lattice) {
   return renderer + " " + std::string(mode_name(mode)) + ", window " + std::to_string(window.left) + "," +
          std::to_string(window.top) + " " + std::to_string(window.width) + "x" + std::to_string(window.height) +
@@ -91,8 +71,7 @@ TEST(Frames, EveryWindowAndLatticeIsThePictureToTheLastBit) {
                                              {8, 8, 4, 4}, {2, 8, 1, 5}, {8, 1, 7, 0}};
     for (const Mode mode : all_modes) {
       for (const Projection projection : {Projection::parallel, Projection::perspective}) {
-        Subject subject;
-        set_subject(subject, mode, projection, width, height);
+        Subject subject = shaken_box(mode, projection, width, height);
         const Drawn whole = draw(renderer, subject.scene, subject.camera, subject.parameters);
         for (const PixelWindow& window : windows) {
           for (const PixelLattice& lattice : lattices) expect_part_of(whole, renderer, subject, window, lattice);
@@ -106,8 +85,7 @@ TEST(Frames, EveryWindowAndLatticeIsThePictureToTheLastBit) {
 TEST(Frames, AnEyeInsideSeesTheSameInParts) {
   for (const std::string& name : renderer_names()) {
     for (const Mode mode : all_modes) {
-      Subject subject;
-      set_subject(subject, mode, Projection::perspective, 43, 35);
+      Subject subject = shaken_box(mode, Projection::perspective, 43, 35);
       subject.camera.eye = subject.scene.center + Vec3(0.21, 0.13, 0.34);
       const Drawn whole = draw(find_renderer(name), subject.scene, subject.camera, subject.parameters);
       for (const PixelWindow& window : {PixelWindow{0, 0, 43, 35}, PixelWindow{10, 17, 30, 3}}) {
@@ -122,8 +100,7 @@ TEST(Frames, AnEyeInsideSeesTheSameInParts) {
 TEST(Frames, LatticesThatShareAFrameMakeTheWholePictureOnAnyNumberOfThreads) {
   for (const std::string& name : renderer_names()) {
     for (const Mode mode : all_modes) {
-      Subject subject;
-      set_subject(subject, mode, Projection::perspective, 39, 27);
+      Subject subject = shaken_box(mode, Projection::perspective, 39, 27);
       const Drawn whole = draw(find_renderer(name), subject.scene, subject.camera, subject.parameters);
       Drawn parts;
       parts.image = Image(39, 27);
@@ -148,8 +125,7 @@ TEST(Frames, LatticesThatShareAFrameMakeTheWholePictureOnAnyNumberOfThreads) {
 TEST(Frames, ProgressGoesFromZeroToOneInEachDrawingWhichCanBeCancelled) {
   for (const std::string& name : renderer_names()) {
     for (const Mode mode : all_modes) {
-      Subject subject;
-      set_subject(subject, mode, Projection::parallel, 64, 64);
+      Subject subject = shaken_box(mode, Projection::parallel, 64, 64);
       RenderStats stats;
       const auto frame = find_renderer(name).prepare(subject.scene, subject.camera, subject.parameters,
                                                      whole_picture(subject.camera), stats, no_progress());
