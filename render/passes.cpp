@@ -15,7 +15,7 @@ void render_in_passes(const Renderer& renderer, const Scene& scene, const Camera
   for (int top = 0; top < camera.height; top += rows) {
     const int bottom = std::min(top + rows, camera.height);
     Progress part(progress, static_cast<double>(top) / camera.height, static_cast<double>(bottom) / camera.height);
-    const Image band =
+    Image band =
         render_window(renderer, scene, camera, parameters, {0, top, camera.width, bottom - top}, stats, channels, part);
     sink(band, top);
   }

@@ -7,8 +7,9 @@
 
 namespace atomesh {
 
-// A finished band, from the top of the picture down. The channels given to render_in_passes() hold this band's values.
-using BandSink = std::function<void(const Image& band, int first_row)>;
+// Takes a finished band, from the top of the picture down, and may write into it. The channels given to
+// render_in_passes() hold this band's values.
+using BandSink = std::function<void(Image& band, int first_row)>;
 
 // What render() does, `rows` rows at a time: the same pixels to the last bit, the same statistics added up (though a
 // step's work, such as projecting the scene, is done in each pass). Progress goes over all passes. Throws what render()

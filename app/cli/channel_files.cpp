@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "app/cli/output_file.h"
-#include "app/cli/write_npy.h"
 #include "core/error.h"
 
 namespace atomesh::cli {
@@ -31,10 +30,23 @@ Channels ChannelFiles::channels() {
   return channels;
 }
 
-void ChannelFiles::write(int width, int height) const {
-  if (!thickness_path_.empty()) write_npy(thickness_path_, thickness_, width, height);
-  if (!depth_path_.empty()) write_npy(depth_path_, depth_, width, height);
-  if (!id_path_.empty()) write_npy(id_path_, id_, width, height);
+void ChannelFiles::begin(int width, int height) {
+  using Type = NpyWriter::Type;
+  if (!thickness_path_.empty()) thickness_file_.emplace(thickness_path_, Type::float32, width, height);
+  if (!depth_path_.empty()) depth_file_.emplace(depth_path_, Type::float32, width, height);
+  if (!id_path_.empty()) id_file_.emplace(id_path_, Type::uint32, width, height);
+}
+
+void ChannelFiles::write_rows() {
+  if (thickness_file_) thickness_file_->write(thickness_);
+  if (depth_file_) depth_file_->write(depth_);
+  if (id_file_) id_file_->write(id_);
+}
+
+void ChannelFiles::finish() {
+  if (thickness_file_) thickness_file_->finish();
+  if (depth_file_) depth_file_->finish();
+  if (id_file_) id_file_->finish();
 }
 
 }  // namespace atomesh::cli

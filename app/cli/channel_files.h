@@ -1,9 +1,11 @@
 // --channel NAME=FILE.npy: per-pixel numbers beside the picture.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cli/write_npy.h"
 #include "core/parameters.h"
 #include "render/renderer.h"
 
@@ -17,9 +19,17 @@ class ChannelFiles {
 
   // Points into this object.
   Channels channels();
-  void write(int width, int height) const;
+
+  // The files of a picture of that size; then, as often as there are rows, what channels() hold of them, from the top;
+  // then the files get their names. Without finish() nothing is left.
+  void begin(int width, int height);
+  void write_rows();
+  void finish();
 
  private:
+  std::optional<NpyWriter> thickness_file_;
+  std::optional<NpyWriter> depth_file_;
+  std::optional<NpyWriter> id_file_;
   std::string thickness_path_;
   std::string depth_path_;
   std::string id_path_;

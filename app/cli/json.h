@@ -36,6 +36,8 @@ class Json {
   void set(std::string key, Json value);  // of an object; keys are written in the order they are set
   void push(Json value);                  // of an array
 
+  bool null() const { return value_.index() == 0; }
+
   // Indented by two blanks; arrays of plain values stay on one line.
   std::string text() const;
 

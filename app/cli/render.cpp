@@ -17,6 +17,7 @@
 #include "app/cli/picture_comparison.h"
 #include "app/cli/pipeline_options.h"
 #include "app/cli/render_legend.h"
+#include "app/cli/render_picture.h"
 #include "app/cli/session.h"
 #include "app/cli/text_table.h"
 #include "app/cli/text_values.h"
@@ -57,6 +58,7 @@ struct RenderArguments {
   bool transparent = false;
   std::vector<std::string> channels;
   LegendOptions legend;
+  PictureOptions picture;
   bool help_parameters = false;
   std::string field;
   MeshFileOptions mesh;
@@ -82,9 +84,8 @@ Parameters chosen_parameters(const RenderArguments& arguments) {
   return parameters;
 }
 
-std::vector<std::pair<std::string, std::string>> picture_text(const RenderArguments& arguments,
-                                                              const Parameters& parameters, const Material& material,
-                                                              std::string_view renderer) {
+PngText picture_text(const RenderArguments& arguments, const Parameters& parameters, const Material& material,
+                     std::string_view renderer) {
   std::string origin;
   const Provenance& provenance = material.provenance;
   if (!provenance.input.empty()) origin += "input=" + provenance.input + "\n";
@@ -147,20 +148,15 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
     if (!note.empty()) session.note(note);
   }
   const Camera camera = make_camera(parameters, scene.bounds, width, height);
-  RenderStats stats;
   PictureLegend legend(arguments.legend, parameters.mode);
-  Image image =
-      render(renderer, scene, camera, parameters, stats, legend.channels(channel_files.channels()), session.progress());
-  legend.lay_out(scene, loaded.material, parameters, camera, true, session);
-  legend.draw(image);
-  session.progress().stage("write_picture");
-  write_png(arguments.output, image, picture_text(arguments, parameters, loaded.material, renderer.name()),
-            session.progress());
-  channel_files.write(width, height);
+  const PictureReport drawn = draw_picture({renderer, loaded.material, scene, camera, parameters, arguments.output,
+                                            picture_text(arguments, parameters, loaded.material, renderer.name())},
+                                           arguments.picture, channel_files, legend, session);
+  const RenderStats& stats = drawn.stats;
   const double total_ms = elapsed_since(start);
 
-  session.print("{}: {}, renderer {}, {}x{}; load {} ms, setup {} ms, render {} ms, total {} ms", arguments.output,
-                mode_name(parameters.mode), renderer.name(), width, height, milliseconds(loaded.ms),
+  session.print("{}: {}, renderer {}, {}x{}{}; load {} ms, setup {} ms, render {} ms, total {} ms", arguments.output,
+                mode_name(parameters.mode), renderer.name(), width, height, drawn.summary, milliseconds(loaded.ms),
                 milliseconds(scene_ms + stats.setup_ms), milliseconds(stats.render_ms), milliseconds(total_ms));
   Json json = Json::object({{"mode", mode_name(parameters.mode)},
                             {"renderer", renderer.name()},
@@ -177,6 +173,8 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
                             {"output", Json::object({{"file", arguments.output},
                                                      {"bytes", std::filesystem::file_size(arguments.output)}})}});
   legend.add_to(json);
+  if (!drawn.passes.null()) json.set("passes", drawn.passes);
+  if (!drawn.progressive.null()) json.set("progressive", drawn.progressive);
   int exit_code = exit_done;
   if (!arguments.reference.empty()) {
     const PictureComparison comparison = compare_pictures(arguments.output, arguments.reference, arguments.tolerance,
@@ -215,6 +213,7 @@ Command add_render(CLI::App& app) {
                  "Also write numbers per pixel: thickness (Å, mode xray), depth (Å) or id (modes surface, atoms)")
       ->type_name("NAME=FILE.npy");
   add_legend_options(app, arguments->legend);
+  add_picture_options(app, arguments->picture);
   app.add_option("--reference", arguments->reference,
                  "Compare the picture with this one; where they differ, exit with 4 and leave IMG-difference.png")
       ->type_name("IMG");
