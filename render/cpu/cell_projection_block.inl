@@ -183,7 +183,10 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
                                                            const Pixels& rays, const BlockScratch& lists,
                                                            std::uint32_t& met_cells) {
   const Pixels pixels = rays;
-  const BlockScratch scratch = lists;
+  float* const all_in = lists.u_in;
+  float* const all_out = lists.u_out;
+  std::uint16_t* const all_lanes = lists.lanes;
+  std::uint32_t* const records = lists.record;
   const Lanes nearest(view.nearest);
   const Lanes farthest(view.farthest);
   const std::uint32_t* const cells = block.cells;
@@ -214,11 +217,11 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
     const unsigned met = bits(lanes);
     // Which cells meet a ray follows no pattern that a branch could learn: every cell is noted, and those that meet
     // none are overwritten by the next.
-    store(scratch.u_in + 16 * count, u_in);
-    store(scratch.u_out + 16 * count, select(lanes, u_out, min(u_in, u_out)));
-    scratch.lanes[count] = static_cast<std::uint16_t>(met);
-    scratch.record[count] = record;
-    if (sorted) sorted = order.add(scratch, count, u_in, lanes);
+    store(all_in + 16 * count, u_in);
+    store(all_out + 16 * count, select(lanes, u_out, min(u_in, u_out)));
+    all_lanes[count] = static_cast<std::uint16_t>(met);
+    records[count] = record;
+    if (sorted) sorted = order.add(lists, count, u_in, lanes);
     count += (0U - met) >> 31U;
   }
   met_cells = count;

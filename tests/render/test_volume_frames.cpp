@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "preprocess/tetrahedralize.h"
 #include "render/cpu/cell_projection_kernel.h"
@@ -82,7 +83,9 @@ Image drawn_in_windows(const Case& c, int width, int height, int stride) {
 
 class VolumeFrames : public testing::TestWithParam<std::tuple<Mode, Projection, std::string>> {
  protected:
+  void TearDown() override { set_threads(0); }
   void SetUp() override {
+    set_threads(1);  // quicker for so small pictures
     const auto [mode, projection, kind] = GetParam();
     case_.name = kind;
     Parameters& parameters = case_.parameters = looking(mode, kind == "lattice" ? "front" : "iso", projection);
@@ -138,14 +141,30 @@ TEST_P(VolumeFrames, WindowsAreTheDirectPicture) {
 }
 
 TEST_P(VolumeFrames, ThreadsDrawTheDirectPicture) {
-  set_threads(1);
   const Image one = direct();
   for (const int count : {2, 5}) {
     set_threads(count);
     EXPECT_EQ(difference(one, direct()), "") << count;
     EXPECT_EQ(difference(one, drawn_in_lattices(case_, 4, 4)), "") << count;
   }
-  set_threads(0);
+}
+
+// Each instruction set by itself, and all within rounding of each other.
+TEST_P(VolumeFrames, EveryInstructionSetDrawsTheDirectPicture) {
+  cell_projection::set_kernel("baseline");
+  const Image baseline = direct();
+  for (const char* name : {"baseline", "avx2", "avx512"}) {
+    try {
+      cell_projection::set_kernel(name);
+    } catch (const UnavailableError&) {
+      continue;  // not on this processor
+    }
+    const Image whole = direct();
+    EXPECT_EQ(difference(whole, drawn_in_lattices(case_, 4, 4)), "") << name;
+    EXPECT_EQ(difference(whole, drawn_in_windows(case_, 37, 41, 1)), "") << name;
+    EXPECT_LE(compare_images(whole, baseline).max, case_.name == "dense" ? 2e-5 : 3e-6) << name;
+  }
+  cell_projection::set_kernel("");
 }
 
 std::string case_name(const testing::TestParamInfo<VolumeFrames::ParamType>& info) {
