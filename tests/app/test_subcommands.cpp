@@ -293,6 +293,14 @@ TEST_F(Subcommands, LegendsAreDrawnAndReported) {
   EXPECT_EQ(atoms["legend"]["entries"][0]["color"], "#909090");
   const json volume = run_json({"render", "d.crb", "-o", "v.png", "--mode", "volume", "--size", "240x180", "--legend"});
   EXPECT_EQ(volume["legend"]["range"], json::array({0.0, 1.0}));
+  // Drawn in passes: the same picture where the scale is known beforehand; thickness goes up to what could be.
+  EXPECT_EQ(run({"render", "d.crb", "-o", "p.png", "--mode", "volume", "--size", "240x180", "--legend", "--pass-rows",
+                 "31", "--reference", "v.png"})
+                .exit_code,
+            0);
+  const json passes = run_json(with({"--legend", "--pass-rows", "31"}));
+  EXPECT_EQ(passes["legend"]["range_of"], "diagonal of the sample");
+  EXPECT_GE(passes["legend"]["range"][1], report["legend"]["range"][1]);
   // What has no legend, and what has no room for one, is drawn without and says so.
   const Outcome surface = run({"render", "d.crb", "-o", "s.png", "--mode", "surface", "--size", "240x180", "--legend"});
   EXPECT_EQ(surface.exit_code, 0);
