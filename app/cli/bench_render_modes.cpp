@@ -7,8 +7,8 @@
 namespace atomesh::cli {
 
 void bench_render_modes(RenderBench& bench) {
-  TextTable table({"case", "mode", "integrator", "ms", "prepare", "draw", "M steps", "M steps/s/core", "max error",
-                   "RMS", "PSNR, dB"});
+  TextTable table({"case", "mode", "integrator", "ms", "prepare", "draw", "M steps", "M steps/s/core", "MB",
+                   "max error", "RMS", "PSNR, dB"});
   Progress& progress = bench.session.progress();
   for (const std::string& name :
        bench.cases({"comb", "lattice-36", "nacl-cracked"}, {"blunt-fin", "post", "quake", "lattice-36-random"})) {
@@ -34,8 +34,8 @@ void bench_render_modes(RenderBench& bench) {
           table.row({label, std::string(mode_name(mode)), integrator, milliseconds(picture.total().median),
                      milliseconds(picture.prepare().median), milliseconds(picture.pixels().median),
                      cells ? fmt::format("{:.2f}", 1e-6 * static_cast<double>(picture.steps())) : "",
-                     cells ? fmt::format("{:.1f}", picture.rate()) : "", short_number(error.max),
-                     short_number(error.rmse), fmt::format("{:.1f}", error.psnr)});
+                     cells ? fmt::format("{:.1f}", picture.rate()) : "", fmt::format("{:.1f}", 1e-6 * picture.memory()),
+                     short_number(error.max), short_number(error.rmse), fmt::format("{:.1f}", error.psnr)});
         }
       }
     }
@@ -45,7 +45,7 @@ void bench_render_modes(RenderBench& bench) {
        fmt::format(
            "{}x{}. ms: a picture from the scene in memory, median of {} runs after one not counted. Steps: "
            "ray–tetrahedron intersections that contributed; a second of one core, by processor time of the whole "
-           "picture. Errors against the judge.",
+           "picture. MB: beyond the scene, the picture included. Errors against the judge.",
            bench.width(512), bench.height(512), bench.options.repeats)});
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "core/parallel.h"
 
 namespace atomesh::cli {
@@ -10,10 +12,14 @@ void TimedPicture::draw(Progress& progress, bool counted) {
   const Renderer& renderer = find_renderer("auto");
   std::unique_ptr<Frame> frame;
   stats_ = {};
+  image_ = {};
+  std::optional<PeakMemory> peak;
+  if (!counted) peak.emplace();
   image_ = Image(camera_.width, camera_.height);
   const Run prepare =
       timed([&] { frame = renderer.prepare(scene_, camera_, parameters_, whole_picture(camera_), stats_, progress); });
   const Run pixels = timed([&] { frame->draw({}, image_, stats_, {}, progress); });
+  if (peak) memory_ = peak->grown();
   if (!counted) return;
   prepare_.push_back(prepare);
   pixels_.push_back(pixels);
@@ -74,7 +80,9 @@ Json picture_settings(const Parameters& parameters, const std::string& view, con
 
 BenchRow picture_row(const std::string& case_name, std::string what, Json settings, const TimedPicture& picture) {
   BenchRow row{"render", case_name, std::move(what), std::move(settings), "", picture.total(), {}, {}, {}};
-  row.more = {{"prepare_ms", picture.prepare().median}, {"draw_ms", picture.pixels().median}};
+  row.more = {{"prepare_ms", picture.prepare().median},
+              {"draw_ms", picture.pixels().median},
+              {"frame_mb", 1e-6 * picture.memory()}};
   if (picture.steps() > 0) {
     row.more.insert(
         row.more.end(),

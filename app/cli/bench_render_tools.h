@@ -33,12 +33,14 @@ class TimedPicture {
   TimedPicture(const Scene& scene, const Camera& camera, const Parameters& parameters)
       : scene_(scene), camera_(camera), parameters_(parameters) {}
 
-  // Once more. A run that is not `counted` warms up.
+  // Once more. A run that is not `counted` warms up, and shows what memory a picture takes.
   void draw(Progress& progress, bool counted = true);
   void draw(int repeats, Session& session, const std::string& what);
 
   const Image& image() const { return image_; }  // premultiplied, of the last run
   std::uint64_t steps() const { return stats_.steps; }
+  // The most that preparing and drawing took beyond the scene, the picture included; bytes.
+  double memory() const { return memory_; }
   Times total() const { return times_of(total_); }
   Times prepare() const { return times_of(prepare_); }
   Times pixels() const { return times_of(pixels_); }
@@ -51,6 +53,7 @@ class TimedPicture {
   const Parameters& parameters_;
   Image image_;
   RenderStats stats_;  // of the last run
+  double memory_ = 0.0;
   std::vector<Run> total_, prepare_, pixels_;
 };
 
