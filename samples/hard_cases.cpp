@@ -147,6 +147,9 @@ void add_slivers(std::vector<HardCase>& cases, const DelaunayMesher& delaunay) {
         {"nearly along the layer", camera_at(Projection::parallel, {2, 2, 1}, {0, 1, -1e-4}, z_up, 9.0, 0.131, 33)});
     views.push_back({"in the layer's plane, perspective",
                      camera_at(Projection::perspective, {2, 2, 1}, {0, 1, 0}, z_up, 9.0, 0.015, 33)});
+    if (height > 1e-7) {  // the thinner one is no place at all in floats
+      for (std::size_t v = 3; v < views.size(); ++v) views[v].values_unresolved = true;
+    }
     Solid solid = box_solid(material);
     cases.push_back(make_case(group, name, std::move(material), std::move(solid), std::move(views)));
   }
@@ -339,7 +342,7 @@ void add_needles(std::vector<HardCase>& cases) {
     const Vec3 middle(0.3 + 0.5e-6, 0.3 + 0.5e-6, 0.5);
     for (const auto& [view, forward, up] : {std::tuple{"along z, in the gap", Vec3(0, 0, -1), Vec3(0, 1, 0)},
                                             std::tuple{"along y, in the gap", Vec3(0, 1, 0), z_up}}) {
-      views.push_back({view, camera_at(Projection::parallel, middle, forward, up, 5.0, 0.05, 33)});
+      views.push_back({view, camera_at(Projection::parallel, middle, forward, up, 5.0, 0.05, 33), true});
       views.push_back(
           {std::string(view) + ", close", camera_at(Projection::parallel, middle, forward, up, 5.0, 1.3e-7, 33)});
     }

@@ -40,6 +40,10 @@ ConvexBody convex_hull_body(std::span<const Triangle> outward, std::span<const V
 struct HardView {
   std::string name;
   Camera camera;
+  // Rays run inside cells a few hundred thousandths of a pixel wide, between whose sides values differ by all there
+  // is. Floats know a place in a tile of 32 pixels to 2⁻¹⁹ pixel, so that they cannot tell which value holds there; how
+  // far the ray runs inside they must.
+  bool values_unresolved = false;
 };
 
 struct HardCase {
