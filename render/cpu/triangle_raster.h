@@ -26,8 +26,9 @@ struct Crossing {
 };
 
 // With h the vertices' homogeneous image-plane coordinates, (x, y, 1) · (h_i × h_j) tells on which side of the edge ij
-// the ray through (x, y) passes; its terms come in the order i < j, so that both triangles at an edge see the same
-// number; a zero is resolved as if the ray stood an infinitely small ε further right and ε² further up.
+// the ray through (x, y) passes. Seen from the triangle beyond the edge all of it is negated, to the last bit (products
+// commute, differences turn round, and the build allows no fused ones): both triangles at an edge see the same number.
+// A zero is resolved as if the ray stood an infinitely small ε further right and ε² further up.
 class TriangleRaster {
  public:
   TriangleRaster(const ProjectedVertices& vertices, const Triangle& corners, bool perspective);
@@ -36,14 +37,19 @@ class TriangleRaster {
   struct Row {
     std::array<double, 3> constant;
   };
-  Row row(double y) const;
+  Row row(double y) const {
+    Row row;
+    for (std::size_t k = 0; k < 3; ++k) row.constant[k] = edges_[k].y * y + edges_[k].constant;
+    return row;
+  }
 
   bool crosses(const Row& row, double x, Crossing& crossing) const {
     std::array<double, 3> side;
     int left = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       side[k] = edges_[k].x * x + row.constant[k];
-      left += side[k] > 0.0 || (side[k] == 0.0 && edges_[k].tie_left) ? 1 : 0;
+      // No branches: which way it goes is not to be foreseen.
+      left += static_cast<int>(side[k] > 0.0) | (static_cast<int>(side[k] == 0.0) & edges_[k].tie_left);
     }
     if (left != 0 && left != 3) return false;
     // The crossing's barycentric weights are the sides' shares, so its depth lies between the corners'.
@@ -70,11 +76,14 @@ class TriangleRaster {
  private:
   struct Edge {
     double x, y, constant;
-    bool tie_left;
+    int tie_left;  // 1 where a zero counts as positive
   };
   std::array<Edge, 3> edges_;  // opposite corner 0, 1, 2
   std::array<double, 3> depths_;
 };
+
+// Sides of `pixels` below are at most this.
+inline constexpr int raster_side = 32;
 
 // Calls cross(column, row, triangle, its raster, crossing) for every crossing of a ray of the lattice's pixels within
 // `pixels` with one of the triangles (indices into the surface), triangle by triangle.
@@ -83,6 +92,12 @@ void cross_triangles(std::span<const Triangle> surface, const Camera& camera, co
                      std::span<const Index> triangles, const PixelBox& pixels, const PixelLattice& lattice,
                      Cross&& cross) {
   const bool perspective = camera.projection == Projection::perspective;
+  std::array<double, raster_side> x;  // of the rays in each column
+  std::array<double, raster_side> y;
+  for (int i = 0; i < raster_side; ++i) {
+    x[static_cast<std::size_t>(i)] = camera.x_of(pixels.first_column + i + surface_ray_shift);
+    y[static_cast<std::size_t>(i)] = camera.y_of(pixels.first_row + i - surface_ray_shift * surface_ray_lift);
+  }
   for (const Index triangle : triangles) {
     const Triangle& corners = surface[triangle];
     const PixelBox box = pixel_box(vertices, corners, camera.width, camera.height);
@@ -93,10 +108,10 @@ void cross_triangles(std::span<const Triangle> surface, const Camera& camera, co
     if (first_column > last_column || first_row > last_row) continue;
     const TriangleRaster raster(vertices, corners, perspective);
     for (int row = first_row; row <= last_row; row += lattice.row_stride) {
-      const TriangleRaster::Row sides = raster.row(camera.y_of(row - surface_ray_shift * surface_ray_lift));
+      const TriangleRaster::Row sides = raster.row(y[static_cast<std::size_t>(row - pixels.first_row)]);
       for (int column = first_column; column <= last_column; column += lattice.column_stride) {
         Crossing crossing{};
-        if (raster.crosses(sides, camera.x_of(column + surface_ray_shift), crossing))
+        if (raster.crosses(sides, x[static_cast<std::size_t>(column - pixels.first_column)], crossing))
           cross(column, row, triangle, raster, crossing);
       }
     }
