@@ -131,14 +131,15 @@ Image finish(RayPicture&& rays, int n, const Vec4f& background, const Channels& 
   return image;
 }
 
-Image finish_spread(const RayPicture& rays, const SubResolution& drawn, int n, const Vec4f& background) {
+void finish_spread(const RayPicture& rays, const SubResolution& drawn, int n, const Vec4f& background, Image& image) {
   const int width = rays.image.width;
+  const int height = rays.image.height;
   const auto ray = spread_rays_of(rays.image.pixels, width, drawn);
-  Image image(width / n, rays.image.height / n);
+  if (image.width != width / n || image.height != height / n) image = Image(width / n, height / n);
   if (n > 1) {
     set_means(image.pixels, image.width, image.height, n, ray);
     lay_background(image, background);
-    return image;
+    return;
   }
   // A block is finished once and copied.
   const int block_width = drawn.block_width();
@@ -153,7 +154,6 @@ Image finish_spread(const RayPicture& rays, const SubResolution& drawn, int n, c
       std::copy_n(first, width, &image.at(0, row));
     }
   });
-  return image;
 }
 
 void spread_channels(const RayPicture& rays, const SubResolution& drawn, int n, const Channels& channels) {

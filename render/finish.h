@@ -28,8 +28,9 @@ void check_picture(const Camera& camera, const Parameters& parameters);
 // The finished picture; what the rays hold is used up. Channels the mode does not have are left as they are.
 Image finish(RayPicture&& rays, int n, const Vec4f& background, const Channels& channels);
 
-// The same of rays that are drawn as far as `drawn` says: the picture of rays starts at the picture's first pixel.
-Image finish_spread(const RayPicture& rays, const SubResolution& drawn, int n, const Vec4f& background);
+// The same of rays that are drawn as far as `drawn` says: the picture of rays starts at the picture's first pixel. An
+// `image` of the right size is written over, which saves the system's handing out of memory.
+void finish_spread(const RayPicture& rays, const SubResolution& drawn, int n, const Vec4f& background, Image& image);
 void spread_channels(const RayPicture& rays, const SubResolution& drawn, int n, const Channels& channels);
 
 // A window of the finished picture, see render().

@@ -78,8 +78,11 @@ ProgressivePicture render_progressively(const Renderer& renderer, const Scene& s
     if (!draw_step(*frame, step.lattices, window, rays, drawn, deadline, stats, ray_channels, progress)) break;
     const auto finishing = Clock::now();
     picture.resolution = step.reached;
-    picture.image = step.reached.complete() ? finish(std::move(rays), n, parameters.background, channels)
-                                            : finish_spread(rays, step.reached, n, parameters.background);
+    if (step.reached.complete()) {
+      picture.image = finish(std::move(rays), n, parameters.background, channels);
+    } else {
+      finish_spread(rays, step.reached, n, parameters.background, picture.image);
+    }
     ++picture.level;
     picture.fraction = static_cast<double>(drawn) / static_cast<double>(window.pixels());
     const auto finished = Clock::now();
