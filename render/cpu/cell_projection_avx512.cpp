@@ -11,6 +11,7 @@
 // clang-format off
 #include "render/cpu/cell_projection_blocks.inl"
 #include "render/cpu/cell_projection_setup.inl"
+#include "render/cpu/cell_projection_values.inl"
 #include "render/cpu/cell_projection_light.inl"
 #include "render/cpu/cell_projection_segment.inl"
 #include "render/cpu/cell_projection_table.inl"

@@ -1,5 +1,5 @@
 // What the driver of cell projection and its kernels hand each other: plain structs, no classes. A kernel is one source
-// (cell_projection_blocks.inl, _setup.inl, _light.inl, _segment.inl, _table.inl, _colors.inl, _mapped.inl,
+// (cell_projection_blocks.inl, _setup.inl, _values.inl, _light.inl, _segment.inl, _table.inl, _colors.inl, _mapped.inl,
 // _integrate.inl, _layers.inl, _block.inl) compiled once per instruction set.
 //
 // Depth along a ray is carried as u, affine in the pixel for every plane and growing with depth z:
@@ -98,10 +98,12 @@ struct ColorRange {
   float low[4], high[4];
 };
 
-// One scalar; `base` is counted from `reference`.
+// One scalar; `base` is counted from `reference`, and (i, j) from the pixel at `column` and `row`, where the centroid
+// is seen.
 struct alignas(64) CellScalar {
   float base_a, base_b, base_c;
   float slope_a, slope_b, slope_c;
+  float column, row;
   float depth;  // z_cell - z_ref
   float low, high;
   float reference;               // the mean of the vertices'

@@ -1,5 +1,5 @@
 // A block's light on its way through the cells, and the rays themselves. Included by the kernels' sources after
-// cell_projection_setup.inl.
+// cell_projection_values.inl.
 //
 // No lane's result depends on the other lanes, to the last bit: where lanes need different formulas each gets the one
 // it needs by select(), and any() only passes over work that no lane needs.

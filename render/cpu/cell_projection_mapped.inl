@@ -21,8 +21,9 @@ class MappedCells : public BlockOptics {
   };
   Segment segment(const CellScalar& cell, const Lanes& u_in, const Lanes& u_out) const {
     const Way w = way(u_in, u_out, cell.depth);
-    const Lanes base = affine(pixels_, cell.base_a, cell.base_b, cell.base_c);
-    const Lanes slope = affine(pixels_, cell.slope_a, cell.slope_b, cell.slope_c);
+    const Pixels pixels{pixels_.column - Lanes(cell.column), pixels_.row - Lanes(cell.row)};
+    const Lanes base = affine(pixels, cell.base_a, cell.base_b, cell.base_c);
+    const Lanes slope = affine(pixels, cell.slope_a, cell.slope_b, cell.slope_c);
     const float low = cell.low - cell.reference;
     const float high = cell.high - cell.reference;
     return {clamp(multiply_add(w.z_in, slope, base), low, high), clamp(multiply_add(w.z_out, slope, base), low, high),

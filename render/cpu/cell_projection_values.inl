@@ -1,0 +1,180 @@
+// Set-up of what a tile's cells carry, and the whole set-up of a tile. Included by the kernels' sources after
+// cell_projection_setup.inl.
+
+namespace atomesh::ATOMESH_ISA {
+
+// What values at the corners become values along the rays by.
+struct CellSlopes {
+  Doubles wx[4], wy[4], wz[4];  // gradients of the barycentric coordinates
+  Doubles mx, my, mz;           // centroid
+  Doubles extent;               // no corner is farther from it
+};
+
+// Cell l of vertices with RGBA.
+static inline void write_colors(const View& view, const SetupInput& input, double x0, double y0, const CellGroup& g,
+                                const CellSlopes& s, int l, CellColors& colors, ColorRange& range) {
+  F4 low{};
+  F4 high{};
+  D4 gx{};
+  D4 gy{};
+  D4 gz{};
+  D4 mean{};
+  for (int v = 0; v < 4; ++v) {
+    F4 here;
+    __builtin_memcpy(&here, input.values + 4 * static_cast<std::size_t>(g.vertex[v][l]), sizeof here);
+    low = v == 0 ? here : (here < low ? here : low);
+    high = v == 0 ? here : (here > high ? here : high);
+    const D4 exact = to_doubles(here);
+    mean += 0.25 * exact;
+    gx = multiply_add(exact, D4{} + s.wx[v][l], gx);
+    gy = multiply_add(exact, D4{} + s.wy[v][l], gy);
+    gz = multiply_add(exact, D4{} + s.wz[v][l], gz);
+  }
+  const double across = view.perspective ? view.pixel : 0.0;
+  const double h = view.perspective ? s.mz[l] : 1.0;
+  const F4 base_a = to_floats(gx * (h * view.pixel));
+  const F4 base_b = to_floats(gy * (-h * view.pixel));
+  const F4 base_c = to_floats(mean + gx * (h * x0 - s.mx[l]) + gy * (h * y0 - s.my[l]));
+  const F4 slope_a = to_floats(gx * across);
+  const F4 slope_b = to_floats(gy * -across);
+  const F4 slope_c = to_floats(view.perspective ? gz + gx * x0 + gy * y0 : gz);
+  store4(colors.base_a, base_a);
+  store4(colors.base_b, base_b);
+  store4(colors.base_c, base_c);
+  store4(colors.slope_a, slope_a);
+  store4(colors.slope_b, slope_b);
+  store4(colors.slope_c, slope_c);
+  colors.depth = static_cast<float>(s.mz[l] - view.reference);
+  // Where the rounding of the largest terms is at most 2e-6 they are not clamped.
+  constexpr float side = tile_side;
+  const F4 reach =
+      side * (magnitude(base_a) + magnitude(base_b)) + magnitude(base_c) +
+      static_cast<float>(s.extent[l]) * (side * (magnitude(slope_a) + magnitude(slope_b)) + magnitude(slope_c));
+  colors.wild = any_above(reach, 32.0F) ? 1 : 0;
+  store4(range.low, low);
+  store4(range.high, high);
+}
+
+// To the nearest whole number, within what a float counts exactly.
+static inline Doubles nearest_whole(const Doubles& v) {
+  const Doubles limit = Doubles{} + 1e6;
+  const Doubles bounded = v > -limit ? (v < limit ? v : limit) : -limit;
+  constexpr double magic = 0x1.8p52;
+  return (bounded + magic) - magic;
+}
+
+// Cells of vertices with a scalar, as many as `count` of the group.
+static inline void write_scalars(const View& view, const SetupInput& input, double x0, double y0, const CellGroup& g,
+                                 const CellSlopes& s, int count, CellScalar* scalars) {
+  Floats low{};
+  Floats high{};
+  Doubles gx{};
+  Doubles gy{};
+  Doubles gz{};
+  Doubles mean{};
+  for (int v = 0; v < 4; ++v) {
+    Floats here;
+    for (int l = 0; l < group_size; ++l) here[l] = input.values[g.vertex[v][l]];
+    low = v == 0 ? here : (here < low ? here : low);
+    high = v == 0 ? here : (here > high ? here : high);
+    const Doubles exact = to_doubles(here);
+    mean += 0.25 * exact;
+    gx += exact * s.wx[v];
+    gy += exact * s.wy[v];
+    gz += exact * s.wz[v];
+  }
+  // Around the pixel that the centroid is seen at, and at the very depth that the record names: what rounding adds is
+  // then a share of what the scalar changes by within the cell.
+  const Floats depth = to_floats(s.mz - view.reference);
+  const Doubles depth_error = to_doubles(depth) - (s.mz - view.reference);
+  const Doubles h = view.perspective ? s.mz + depth_error : Doubles{} + 1.0;
+  const Doubles column = nearest_whole((s.mx / h - x0) / view.pixel);
+  const Doubles row = nearest_whole((y0 - s.my / h) / view.pixel);
+  const Doubles x = x0 + view.pixel * column;
+  const Doubles y = y0 - view.pixel * row;
+  const double across = view.perspective ? view.pixel : 0.0;
+  const Floats base_a = to_floats(gx * (h * view.pixel));
+  const Floats base_b = to_floats(gy * (h * -view.pixel));
+  const Floats reference = to_floats(mean);
+  const Floats base_c =
+      to_floats((mean - to_doubles(reference)) + gx * (h * x - s.mx) + gy * (h * y - s.my) + gz * depth_error);
+  const Floats slope_a = to_floats(gx * across);
+  const Floats slope_b = to_floats(gy * -across);
+  const Floats slope_c = to_floats(view.perspective ? gz + gx * x + gy * y : gz);
+  const Floats columns = to_floats(column);
+  const Floats rows = to_floats(row);
+  for (int l = 0; l < count; ++l) {
+    scalars[l] = {base_a[l], base_b[l], base_c[l], slope_a[l], slope_b[l],   slope_c[l], columns[l],
+                  rows[l],   depth[l],  low[l],    high[l],    reference[l], 0,          0};
+  }
+}
+
+static void setup(const View& view, const SetupInput& input, const SetupOutput& output) {
+  const double x0 = view.left + view.pixel * input.column;
+  const double y0 = view.top - view.pixel * input.row;
+  const double keep = 1.0 - view.order_blend;
+  const BlockTest test(input.lattice);
+  CellGroup g;
+  CellSlopes s;
+  for (std::size_t first = 0; first < input.count; first += group_size) {
+    prefetch_groups(input, first);
+    load_group(input, first, g);
+    g.entries = Ints{};
+    g.steep = Ints{};
+    find_box(view, input.lattice, x0, y0, g);
+    for (int k = 0; k < 4; ++k) find_planes(view, x0, y0, k, g);
+    transpose(g.a, g.cell_a);
+    transpose(g.b, g.cell_b);
+    transpose(g.c, g.cell_c);
+
+    // Gradients of the barycentric coordinates: ±N / 6V. A cell too flat to have them gets the mean of its corners.
+    s.mx = 0.25 * (g.x[0] + g.x[1] + g.x[2] + g.x[3]);
+    s.my = 0.25 * (g.y[0] + g.y[1] + g.y[2] + g.y[3]);
+    s.mz = 0.25 * (g.z[0] + g.z[1] + g.z[2] + g.z[3]);
+    const Doubles volume6 = g.nx[3] * (g.x[3] - g.x[0]) + g.ny[3] * (g.y[3] - g.y[0]) + g.nz[3] * (g.z[3] - g.z[0]);
+    Doubles squares[4];
+    Doubles size{};
+    for (int k = 0; k < 4; ++k) {
+      const Doubles dx = g.x[k] - s.mx;
+      const Doubles dy = g.y[k] - s.my;
+      const Doubles dz = g.z[k] - s.mz;
+      squares[k] = dx * dx + dy * dy + dz * dz;
+      size += squares[k];
+    }
+    const Doubles over_volume = volume6 * volume6 <= 1e-26 * size * size * size ? Doubles{} : 1.0 / volume6;
+    // With L the linear function that equals |p - centroid|² at the corners, the power of the eye with respect to the
+    // circumsphere is |eye - centroid|² - L(eye); seen from infinity cells sort by their circumcentre's depth.
+    Doubles qx{};
+    Doubles qy{};
+    Doubles qz{};
+    for (int k = 0; k < 4; ++k) {
+      const Doubles weight = k % 2 == 0 ? -over_volume : over_volume;
+      s.wx[k] = g.nx[k] * weight;
+      s.wy[k] = g.ny[k] * weight;
+      s.wz[k] = g.nz[k] * weight;
+      qx += squares[k] * s.wx[k];
+      qy += squares[k] * s.wy[k];
+      qz += squares[k] * s.wz[k];
+    }
+    const Doubles keys = view.perspective ? s.mx * s.mx + s.my * s.my + s.mz * s.mz +
+                                                keep * (qx * s.mx + qy * s.my + qz * s.mz - 0.25 * size)
+                                          : s.mz + keep * 0.5 * qz;
+    s.extent = size;
+    for (int l = 0; l < group_size; ++l) s.extent[l] = __builtin_sqrt(size[l]);
+
+    const std::size_t rest = input.count - first;
+    const int count = rest < group_size ? static_cast<int>(rest) : group_size;
+    for (int l = 0; l < count; ++l) {
+      const std::size_t n = first + static_cast<std::size_t>(l);
+      output.keys[n] = keys[l];
+      output.blocks[n] = write_planes(g, l, test, input.wanted, output.planes[n], output.refinements[n]);
+      if (input.value_count == 4 && output.blocks[n] != 0) {
+        write_colors(view, input, x0, y0, g, s, l, output.colors[n], output.ranges[n]);
+      }
+    }
+    if (input.value_count == 1) write_scalars(view, input, x0, y0, g, s, count, output.scalars + first);
+  }
+  count_blocks(output.blocks, input.count, output.per_block);
+}
+
+}  // namespace atomesh::ATOMESH_ISA
