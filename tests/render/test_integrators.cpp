@@ -1,11 +1,15 @@
 // The integrators of cell projection: what a ray gets of a cell, on every kernel this processor runs.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <random>
 
 #include "core/error.h"
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/cpu/cpu_renderer.h"
+#include "render/cpu/reference.h"
+#include "render/shared/preintegration.h"
 #include "tests/render/fixtures.h"
 
 namespace atomesh::test {
@@ -90,6 +94,93 @@ TEST(Integrators, ARaysLightDoesNotDependOnItsNeighbours) {
         });
       }
     }
+  }
+}
+
+// ψ by the midpoint rule in double, fine enough for 1e-7.
+double psi(double near_density, double far_density) {
+  constexpr int steps = 4000;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double u = (i + 0.5) / steps;
+    sum += std::exp(-u * (near_density + 0.5 * u * (far_density - near_density)));
+  }
+  return sum / steps;
+}
+
+TEST(Integrators, TheTableOfPsiIsOffByLessThanItSays) {
+  const float* const table = optics::psi_table();
+  const auto density = [](double place) {
+    const double bend = double{optics::psi_bend};
+    const double gamma =
+        place / (optics::psi_size - 1) * double{optics::psi_deepest} / (bend + double{optics::psi_deepest});
+    return bend * gamma / (1.0 - gamma);
+  };
+  double worst = 0.0;
+  for (int i = 0; i + 1 < optics::psi_size; i += 6) {
+    for (int j = 0; j + 1 < optics::psi_size; j += 6) {
+      const double near_density = density(i + 0.5);
+      const double far_density = density(j + 0.5);
+      if (near_density + far_density > double{optics::psi_deepest}) continue;
+      const float* const at = table + i * optics::psi_size + j;
+      const double between =
+          0.25 * (double{at[0]} + double{at[1]} + double{at[optics::psi_size]} + double{at[optics::psi_size + 1]});
+      worst = std::max(worst, std::abs(between - psi(near_density, far_density)));
+    }
+  }
+  EXPECT_LE(worst, 6e-6);
+}
+
+// Knots and jumps, opaque and transparent.
+ColorMap shells() {
+  return {{{0.0, Vec4f(0, 0, 1, 0)},
+           {0.5, Vec4f(0, 0, 1, 0)},
+           {0.5, Vec4f(1, 0.5, 0, 1)},
+           {0.51, Vec4f(1, 1, 0, 1)},
+           {0.51, Vec4f(0, 1, 0, 0)},
+           {1.0, Vec4f(1, 1, 1, 0.3)}}};
+}
+
+TEST(Integrators, ExactIsWithinAHundredThousandthOfTheJudge) {
+  const Material material = box_material(3, 3, 3, 2.0, shaking(0.35, 7));
+  for (const ColorMap& map : {preset_color_map("viridis"), shells()}) {
+    for (const double alpha_length : {1e-6, 1e-2, 1.0, 10.0}) {
+      Parameters parameters = looking(Mode::volume, "iso", Projection::perspective);
+      parameters.volume.alpha_length = alpha_length;
+      parameters.volume.color_map = map;
+      Scene scene = make_scene(material, parameters);
+      std::mt19937 random(3);
+      for (float& scalar : scene.scalars) scalar = static_cast<float>(random()) * 0x1p-32F;
+      const Camera camera = make_camera(parameters, scene.bounds, 12, 12);
+      const Camera beside =
+          nudged(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
+      const Image judge = draw(reference_renderer(), scene, beside, parameters).image;
+      on_every_kernel([&] {
+        // Where extinction is small so is the light, and so must be the error.
+        EXPECT_LE(compare_images(judge, picture(scene, camera, parameters)).max, 1e-5 * std::min(1.0, alpha_length))
+            << alpha_length;
+      });
+    }
+  }
+}
+
+TEST(Integrators, SamplesOfASmoothFieldConvergeAtSecondOrder) {
+  Material material = box_material(3, 3, 3, 1.5, shaking(0.2, 5));
+  add_defects(material, 6);
+  Parameters parameters = looking(Mode::volume_surface, "iso", Projection::perspective);
+  parameters.volume_surface.face_alpha = 0.0;
+  const Scene scene = make_scene(material, parameters);
+  const Camera camera = make_camera(parameters, scene.bounds, 32, 32);
+  const Image exact = picture(scene, camera, parameters);
+  parameters.integrator = Integrator::sampled;
+  double previous = 0.0;
+  for (const int samples : {1, 2, 4, 8}) {
+    parameters.samples_per_cell = samples;
+    const double error = compare_images(exact, picture(scene, camera, parameters)).max;
+    if (samples > 1) {
+      EXPECT_NEAR(previous / error, 4.0, 0.6) << samples;
+    }
+    previous = error;
   }
 }
 
