@@ -11,9 +11,8 @@ namespace atomesh {
 // render_in_passes() hold this band's values.
 using BandSink = std::function<void(Image& band, int first_row)>;
 
-// What render() does, `rows` rows at a time: the same pixels to the last bit, the same statistics added up (though a
-// step's work, such as projecting the scene, is done in each pass). Progress goes over all passes. Throws what render()
-// and `sink` throw.
+// What render() does, `rows` rows at a time: the same pixels to the last bit, the statistics of all passes added up
+// (the scene is projected anew in each). Progress goes over all passes. Throws what render() and `sink` throw.
 void render_in_passes(const Renderer& renderer, const Scene& scene, const Camera& camera, const Parameters& parameters,
                       int rows, RenderStats& stats, const Channels& channels, const BandSink& sink,
                       Progress& progress = no_progress());

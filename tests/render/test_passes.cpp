@@ -59,7 +59,8 @@ TEST(Passes, AreTheDirectPictureToTheLastBit) {
             EXPECT_EQ(parts.thickness, whole.thickness);
             EXPECT_EQ(parts.depth, whole.depth);
             EXPECT_EQ(parts.id, whole.id);
-            if (mode != Mode::volume && mode != Mode::volume_surface) {
+            // Cell projection draws blocks of 4×4 rays, and counts those that a pass cuts off.
+            if (rows * n % 32 == 0 || (mode != Mode::volume && mode != Mode::volume_surface)) {
               EXPECT_EQ(parts.stats.steps, whole.stats.steps);
             }
           }
