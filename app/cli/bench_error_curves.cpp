@@ -111,7 +111,7 @@ class Curves {
 
   void report(const BenchScene& data, const BenchView& view, Mode mode, const Scene& scene, const Camera& camera,
               const std::deque<Ours>& ours, std::deque<Peer>& peers) {
-    const bool first_plot = data.name == "comb" && mode == Mode::volume && &view == &data.views.front();
+    const bool first_plot = data.name == "comb" && mode == Mode::volume && view.name == data.views.front().name;
     Plot plot{first_plot ? "speed-against-error"
                          : fmt::format("speed-against-error-{}-{}-{}", data.name, view.name, mode_name(mode)),
               fmt::format("Speed against error: {}, {}×{}", label_, camera.width, camera.height),

@@ -199,7 +199,8 @@ TEST(HardCaseCatalogue, CellsInsideOutDoNoHarm) {
       const Parameters parameters = varying_density(mode, hard);
       const Scene scene = make_scene(hard.material, parameters);
       for (const HardView& view : hard.views) {
-        for (const Vec4f& pixel : draw("cpu", scene, view.camera, parameters).image.pixels) {
+        const Drawn drawn = draw("cpu", scene, view.camera, parameters);
+        for (const Vec4f& pixel : drawn.image.pixels) {
           for (int k = 0; k < 4; ++k) {
             ASSERT_GE(pixel[k], 0.0F) << hard.name << ' ' << mode_name(mode);
             ASSERT_LE(pixel[k], 1.0F + 1e-6F) << hard.name << ' ' << mode_name(mode);
