@@ -138,7 +138,7 @@ void add_volume_surface(Table& t) {
     };
   };
   using P = VolumeSurfaceParameters;
-  t.real("volume_surface.alpha_length", "Volume alpha length constant", "1/Å", 0, 1000,
+  t.real("volume_surface.alpha_length", "Volume alpha length constant", "1/Å", 0, 1e12,
          "Opacity of the volume: extinction is this times an atom's opacity coefficient.", of(&P::alpha_length));
   t.real("volume_surface.face_alpha", "Face alpha constant", "", 0, 1,
          "Opacity of surface polygons that face the viewer.", of(&P::face_alpha));
@@ -189,7 +189,7 @@ void add_volume(Table& t) {
     };
   };
   using P = VolumeParameters;
-  t.real("volume.alpha_length", "Volume alpha length constant", "1/Å", 0, 1000,
+  t.real("volume.alpha_length", "Volume alpha length constant", "1/Å", 0, 1e12,
          "Opacity of the volume: extinction is this times the color map's opacity coefficient.", of(&P::alpha_length));
   t.real("volume.positional_multiplier", "Positional defect multiplier", "", 0, 1e6,
          "Weight of positional defects in an atom's scalar.", of(&P::positional_multiplier));
@@ -214,7 +214,7 @@ void add_volume(Table& t) {
 void add_xray(Table& t) {
   t.group("X-ray");
   t.real(
-      "xray.alpha_length", "XRAY alpha length constant", "1/Å", 0, 1000,
+      "xray.alpha_length", "XRAY alpha length constant", "1/Å", 0, 1e12,
       "Opacity for each Å of sample that a ray passes.", [](Parameters & p) -> auto& { return p.xray.alpha_length; });
   t.rgb(
       "xray.color", "XRAY base color", "Color of the sample.", [](Parameters & p) -> auto& { return p.xray.color; });

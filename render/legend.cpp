@@ -99,10 +99,6 @@ std::optional<Legend> make_legend(const Scene& scene, const Material& material, 
   return std::nullopt;
 }
 
-double largest_possible_thickness(const Scene& scene) {
-  return scene.bounds.diagonal();
-}
-
 std::optional<ScaleBar> make_scale_bar(const Camera& camera, const Vec3& center, bool angstroms) {
   double pixel = camera.pixel;  // Å
   const bool perspective = camera.projection == Projection::perspective;

@@ -64,13 +64,9 @@ Legend atoms_legend(const Scene& scene, const Atoms& atoms);
 
 // The legend of the scene's mode: in the modes of the volume, that of the field where one is shown. Nothing for mode
 // surface, whose one colour is that of the lights and the material, or when the picture shows nothing. `max_thickness`
-// is for mode xray: the largest of Channels::thickness or, where the picture is drawn in passes and nobody knows it
-// yet, largest_possible_thickness().
+// is for mode xray: the largest of Channels::thickness.
 std::optional<Legend> make_legend(const Scene& scene, const Material& material, const Parameters& parameters,
                                   double max_thickness);
-
-// Å that no ray through the sample exceeds: the diagonal of its bounds.
-double largest_possible_thickness(const Scene& scene);
 
 // A length of 1, 2 or 5 times a power of ten, and how long it is in the picture.
 struct ScaleBar {

@@ -39,7 +39,8 @@ std::string nothing_to_draw(const Material& material, const Parameters& paramete
     return cut ? "the picture is empty: no visible atom satisfies the cut planes"
                : "the picture is empty: no atom is visible";
   }
-  if (cut) return "the picture is empty: no tetrahedron satisfies the cut planes with all its atoms";
+  if (cut) return "the picture is empty: no tetrahedron satisfies the cut planes with all its corners";
+  if (material.atoms.size() == 0) return "the picture is empty: the mesh has no tetrahedra";
   return fmt::format("the picture is empty: the {} atoms span no volume; --mode atoms shows them",
                      material.atoms.size());
 }
@@ -108,14 +109,15 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
     session.print_text(parameter_documentation());
     return exit_done;
   }
-  if (arguments.input.empty()) throw UsageError("render: expected FILE, a .crb, .crt or atoms file");
+  if (arguments.input.empty()) throw UsageError("render: expected FILE, a .crb or .crt, a mesh or an atoms file");
   if (arguments.output.empty()) throw UsageError("render: expected -o IMG.png");
   check_output(arguments.output, {".png"});
   if (!arguments.reference.empty()) {
     std::error_code ignored;
-    if (std::filesystem::equivalent(arguments.reference, arguments.output, ignored)) {
+    if (std::filesystem::equivalent(arguments.reference, arguments.output, ignored) ||
+        writes_level(arguments.reference, arguments.output, arguments.picture)) {
       throw UsageError("--reference " + arguments.reference +
-                       ": is the picture that -o writes; they would always agree");
+                       ": is a picture that this writes; they would always agree");
     }
     if (!std::filesystem::exists(arguments.reference)) {
       throw InputError(arguments.reference, 0, "does not exist; expected the picture to compare with");

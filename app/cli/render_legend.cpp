@@ -34,20 +34,20 @@ void add_legend_options(CLI::App& app, LegendOptions& options) {
 
 Channels PictureLegend::channels(const Channels& wanted) {
   Channels channels = wanted;
-  if (options_.legend && mode_ == Mode::xray && channels.thickness == nullptr) channels.thickness = &own_thickness_;
+  if (goes_by_thickness() && channels.thickness == nullptr) channels.thickness = &own_thickness_;
   thickness_ = channels.thickness;
   return channels;
 }
 
 void PictureLegend::lay_out(const Scene& scene, const Material& material, const Parameters& parameters,
-                            const Camera& camera, bool drawn, Session& session) {
+                            const Camera& camera, std::optional<double> thickest, Session& session) {
   if (options_.legend) {
-    of_picture_ = drawn && thickness_ != nullptr;
-    double thickest = largest_possible_thickness(scene);
-    if (of_picture_) {
-      thickest = thickness_->empty() ? 0.0 : *std::max_element(thickness_->begin(), thickness_->end());
+    if (!thickest) {
+      thickest = thickness_ == nullptr || thickness_->empty()
+                     ? 0.0
+                     : static_cast<double>(*std::max_element(thickness_->begin(), thickness_->end()));
     }
-    legend_ = make_legend(scene, material, parameters, thickest);
+    legend_ = make_legend(scene, material, parameters, *thickest);
     if (!legend_) {
       session.note(mode_ == Mode::surface ? "--legend: mode surface has one color, there is nothing to explain"
                                           : "--legend: the picture shows nothing that could be explained");
@@ -77,10 +77,7 @@ void PictureLegend::add_to(Json& json) const {
     if (legend_->scale) {
       const LegendScale& scale = *legend_->scale;
       legend.set("range", Json::array({scale.min, scale.max}));
-      if (mode_ == Mode::xray) {
-        legend.set("range_of", of_picture_ ? "picture" : "diagonal of the sample");
-        legend.set("opaque_from", scale.mark ? Json(*scale.mark) : Json());
-      }
+      if (mode_ == Mode::xray) legend.set("opaque_from", scale.mark ? Json(*scale.mark) : Json());
     }
     if (!legend_->entries.empty()) {
       Json entries = Json::array();

@@ -26,8 +26,8 @@ struct LegendOptions {
 };
 void add_legend_options(CLI::App& app, LegendOptions& options);
 
-// In this order: channels() for the renderer, lay_out() once it has drawn (or before the first of several bands),
-// draw(), json().
+// In this order: channels() for the renderer, lay_out() once it has drawn (or, before the first of several bands, with
+// what the thickest of them is), draw(), add_to().
 class PictureLegend {
  public:
   PictureLegend(const LegendOptions& options, Mode mode) : options_(options), mode_(mode) {}
@@ -35,10 +35,13 @@ class PictureLegend {
   // Those wanted and, where the legend goes by the largest in the picture, the thickness.
   Channels channels(const Channels& wanted);
 
-  // `drawn`: the channels hold the whole picture. Else the scale of thickness goes up to what no ray can exceed, the
-  // diagonal of the sample. Notes what was asked for and cannot be.
+  // Whether lay_out() needs the largest thickness of all pixels.
+  bool goes_by_thickness() const { return options_.legend && mode_ == Mode::xray; }
+
+  // `thickest`: Å, where it is needed and channels() do not hold all of the picture. Notes what was asked for and
+  // cannot be.
   void lay_out(const Scene& scene, const Material& material, const Parameters& parameters, const Camera& camera,
-               bool drawn, Session& session);
+               std::optional<double> thickest, Session& session);
 
   // Into a finished picture, or the band of it that begins at this row.
   void draw(Image& band, int first_row = 0) const;
@@ -51,7 +54,6 @@ class PictureLegend {
   Mode mode_;
   std::vector<float> own_thickness_;
   const std::vector<float>* thickness_ = nullptr;
-  bool of_picture_ = true;
   std::optional<Legend> legend_;
   std::optional<ScaleBar> scale_bar_;
   std::optional<LegendDrawing> drawing_;

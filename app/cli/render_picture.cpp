@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
-#include "core/error.h"
+#include "app/cli/text_values.h"
 #include "core/memory.h"
 #include "render/passes.h"
 #include "render/progressive.h"
+#include "render/sub_resolution.h"
 
 namespace atomesh::cli {
 
@@ -20,14 +23,28 @@ std::string level_path(const std::string& output, int level) {
   return path.string();
 }
 
-std::uint64_t whole_bytes(const Picture& picture, const Channels& channels) {
-  return pass_bytes_per_row(picture.camera, picture.parameters, channels) *
-         static_cast<std::uint64_t>(picture.camera.height);
+std::uint64_t pass_bytes(const Picture& picture, const Channels& channels, int rows) {
+  return pass_bytes_per_row(picture.camera, picture.parameters, channels) * static_cast<std::uint64_t>(rows);
 }
 
-// `drawn`: the channels hold the whole picture.
-void lay_out(PictureLegend& legend, const Picture& picture, bool drawn, Session& session) {
-  legend.lay_out(picture.scene, picture.material, picture.parameters, picture.camera, drawn, session);
+// `thickest`: where the channels do not hold the whole picture.
+void lay_out(PictureLegend& legend, const Picture& picture, std::optional<double> thickest, Session& session) {
+  legend.lay_out(picture.scene, picture.material, picture.parameters, picture.camera, thickest, session);
+}
+
+// The largest thickness of all pixels, from passes of their own: a legend's scale must not depend on how it is drawn.
+double thickest_of(const Picture& picture, int rows, Session& session) {
+  std::vector<float> thickness;
+  double thickest = 0.0;
+  RenderStats stats;
+  render_in_passes(
+      picture.renderer, picture.scene, picture.camera, picture.parameters, rows, stats, {.thickness = &thickness},
+      [&](Image&, int) {
+        if (thickness.empty()) return;
+        thickest = std::max(thickest, static_cast<double>(*std::max_element(thickness.begin(), thickness.end())));
+      },
+      session.progress());
+  return thickest;
 }
 
 PictureReport draw_at_once(const Picture& picture, ChannelFiles& channel_files, PictureLegend& legend,
@@ -35,7 +52,7 @@ PictureReport draw_at_once(const Picture& picture, ChannelFiles& channel_files, 
   PictureReport report;
   Image image = render(picture.renderer, picture.scene, picture.camera, picture.parameters, report.stats,
                        legend.channels(channel_files.channels()), session.progress());
-  lay_out(legend, picture, true, session);
+  lay_out(legend, picture, std::nullopt, session);
   legend.draw(image);
   session.progress().stage("write_picture");
   channel_files.begin(image.width, image.height);
@@ -47,8 +64,13 @@ PictureReport draw_at_once(const Picture& picture, ChannelFiles& channel_files, 
 
 PictureReport draw_in_passes(const Picture& picture, int rows, ChannelFiles& channel_files, PictureLegend& legend,
                              Session& session) {
+  require_memory(fmt::format("a pass of {} rows at {}x{} pixels", rows, picture.camera.width, picture.camera.height),
+                 pass_bytes(picture, legend.channels(channel_files.channels()), rows),
+                 "fewer rows at a time (--pass-rows), or a smaller --size");
   PictureReport report;
-  lay_out(legend, picture, false, session);
+  std::optional<double> thickest;
+  if (legend.goes_by_thickness()) thickest = thickest_of(picture, rows, session);
+  lay_out(legend, picture, thickest, session);
   const auto [width, height] = std::pair(picture.camera.width, picture.camera.height);
   PngWriter png(picture.output, width, height, picture.parameters.background.a == 1.0F, picture.text);
   channel_files.begin(width, height);
@@ -72,7 +94,7 @@ PictureReport draw_progressively(const Picture& picture, const PictureOptions& o
                                  PictureLegend& legend, Session& session) {
   // A finished picture stands beside the rays.
   require_memory(fmt::format("--progressive at {}x{} pixels", picture.camera.width, picture.camera.height),
-                 2 * whole_bytes(picture, channel_files.channels()),
+                 2 * pass_bytes(picture, legend.channels(channel_files.channels()), picture.camera.height),
                  "draw it without --progressive, which is done in passes where it must, or at a smaller --size");
   PictureReport report;
   Json levels = Json::array();
@@ -92,7 +114,7 @@ PictureReport draw_progressively(const Picture& picture, const PictureOptions& o
   ProgressivePicture best = render_progressively(picture.renderer, picture.scene, picture.camera, picture.parameters,
                                                  {options.progressive, options.time_budget_ms}, report.stats,
                                                  legend.channels(channel_files.channels()), keep, session.progress());
-  lay_out(legend, picture, true, session);
+  lay_out(legend, picture, std::nullopt, session);
   legend.draw(best.image);
   session.progress().stage("write_picture");
   channel_files.begin(best.image.width, best.image.height);
@@ -121,11 +143,12 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
              "Draw coarse to fine, in sub-windows of 4x4 or 8x8 pixels: the first picture has one pixel of each")
           ->type_name("4|8")
           ->check(CLI::IsMember({4, 8}));
-  app.add_option("--time-budget", options.time_budget_ms,
-                 "With --progressive: draw for this long, then keep the finest picture that is complete; the first "
-                 "always is. Loading and writing do not count")
+  app.add_option_function<std::string>(
+         "--time-budget",
+         [&options](const std::string& text) { options.time_budget_ms = parse_milliseconds("--time-budget", text); },
+         "With --progressive: draw for this long, then keep the finest picture that is complete; the first always is. "
+         "Loading and writing do not count")
       ->type_name("MS")
-      ->check(CLI::NonNegativeNumber)
       ->needs(progressive);
   app.add_flag("--keep-levels", options.keep_levels,
                "With --progressive: also write the picture of every sub-resolution, without a legend, as IMG-1.png, "
@@ -139,16 +162,28 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
       ->excludes(progressive);
 }
 
+bool writes_level(const std::string& path, const std::string& output, const PictureOptions& options) {
+  std::error_code ignored;
+  for (int level = 1;
+       options.keep_levels && level <= static_cast<int>(sub_resolution_steps(options.progressive).size()); ++level) {
+    if (std::filesystem::weakly_canonical(level_path(output, level), ignored) ==
+        std::filesystem::weakly_canonical(path, ignored)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 PictureReport draw_picture(const Picture& picture, const PictureOptions& options, ChannelFiles& channel_files,
                            PictureLegend& legend, Session& session) {
   if (options.progressive > 0) return draw_progressively(picture, options, channel_files, legend, session);
-  const Channels channels = channel_files.channels();
+  const Channels channels = legend.channels(channel_files.channels());
   int rows = options.pass_rows;
   if (rows == 0) {
     rows = rows_within(default_pass_bytes(), picture.camera, picture.parameters, channels);
     if (rows < picture.camera.height) {
       session.note(fmt::format("drawn {} rows at a time: the whole picture would take {}", rows,
-                               memory_text(whole_bytes(picture, channels))));
+                               memory_text(pass_bytes(picture, channels, picture.camera.height))));
     }
   }
   return rows < picture.camera.height ? draw_in_passes(picture, rows, channel_files, legend, session)

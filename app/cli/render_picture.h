@@ -26,6 +26,9 @@ struct PictureOptions {
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
 
+// Whether the file is one that --keep-levels writes beside this output.
+bool writes_level(const std::string& path, const std::string& output, const PictureOptions& options);
+
 struct Picture {
   const Renderer& renderer;
   const Material& material;

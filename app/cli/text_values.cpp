@@ -26,6 +26,14 @@ std::uint64_t parse_count(std::string_view option, const std::string& text) {
   return static_cast<std::uint64_t>(value);
 }
 
+double parse_milliseconds(std::string_view option, const std::string& text) {
+  double value = 0.0;
+  if (!parse_real(text, value) || !(value >= 0.0) || value > 1e12) {
+    throw UsageError(std::string(option) + ": expected milliseconds, 0 or more, got \"" + text + "\"");
+  }
+  return value;
+}
+
 double parse_tolerance(const std::string& text) {
   const std::size_t slash = text.find('/');
   double value = 0.0;

@@ -55,9 +55,10 @@ static inline void write_colors(const View& view, const SetupInput& input, doubl
   store4(range.high, high);
 }
 
-// To the nearest whole number, within what a float counts exactly.
+// To the nearest whole number within a tile and its surroundings: further away (the centroid seen at the level of the
+// eye) the difference to a pixel would cost the bits that it is to save.
 static inline Doubles nearest_whole(const Doubles& v) {
-  const Doubles limit = Doubles{} + 1e6;
+  const Doubles limit = Doubles{} + 2.0 * tile_side;
   const Doubles bounded = v > -limit ? (v < limit ? v : limit) : -limit;
   constexpr double magic = 0x1.8p52;
   return (bounded + magic) - magic;

@@ -280,7 +280,6 @@ TEST_F(Subcommands, LegendsAreDrawnAndReported) {
   EXPECT_EQ(report["legend"]["title"], "thickness, Å");
   EXPECT_EQ(report["legend"]["range"][0], 0.0);
   EXPECT_GT(report["legend"]["range"][1], 10.0);
-  EXPECT_EQ(report["legend"]["range_of"], "picture");
   EXPECT_TRUE(report["scale_bar"]["text"].get<std::string>().ends_with("Å at center"));
   EXPECT_GT(report["scale_bar"]["pixels"], 10.0);
   // The channel is the sample's, whatever is drawn over it.
@@ -293,14 +292,18 @@ TEST_F(Subcommands, LegendsAreDrawnAndReported) {
   EXPECT_EQ(atoms["legend"]["entries"][0]["color"], "#909090");
   const json volume = run_json({"render", "d.crb", "-o", "v.png", "--mode", "volume", "--size", "240x180", "--legend"});
   EXPECT_EQ(volume["legend"]["range"], json::array({0.0, 1.0}));
-  // Drawn in passes: the same picture where the scale is known beforehand; thickness goes up to what could be.
+  // Drawn in passes: the same picture, the scale of thickness included.
   EXPECT_EQ(run({"render", "d.crb", "-o", "p.png", "--mode", "volume", "--size", "240x180", "--legend", "--pass-rows",
                  "31", "--reference", "v.png"})
                 .exit_code,
             0);
-  const json passes = run_json(with({"--legend", "--pass-rows", "31"}));
-  EXPECT_EQ(passes["legend"]["range_of"], "diagonal of the sample");
-  EXPECT_GE(passes["legend"]["range"][1], report["legend"]["range"][1]);
+  run_json(with({"--legend"}));
+  place->write("whole.png", place->read("x.png"));
+  const json passes = run_json(with({"--legend", "--pass-rows", "31", "--reference", "whole.png"}));
+  EXPECT_EQ(passes["reference"]["max"], 0.0);
+  EXPECT_EQ(passes["legend"]["range"], report["legend"]["range"]);
+  // No number, no budget.
+  EXPECT_EQ(run(with({"--progressive", "4", "--time-budget", "nan"})).exit_code, 1);
   // What has no legend, and what has no room for one, is drawn without and says so.
   const Outcome surface = run({"render", "d.crb", "-o", "s.png", "--mode", "surface", "--size", "240x180", "--legend"});
   EXPECT_EQ(surface.exit_code, 0);
