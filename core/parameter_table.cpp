@@ -283,7 +283,7 @@ void add_quality(Table& t) {
   t.add(
       "quality.samples_per_cell", ParameterType::integer, "Samples per cell", "", 1, 1024,
       "Samples of the integrator sampled on a ray's way through a cell. Twice as many make a quarter of the error, or "
-      "half of it where the color map bends or jumps.",
+      "on the average half of it where the color map jumps.",
       [](Parameters & p) -> auto& { return p.samples_per_cell; });
   t.add(
       "quality.supersampling", ParameterType::integer, "Supersampling", "", 1, 16, "n draws n × n rays for each pixel.",

@@ -134,7 +134,8 @@ void add_lattices(std::vector<HardCase>& cases, const DelaunayMesher& delaunay) 
 
 void add_slivers(std::vector<HardCase>& cases, const DelaunayMesher& delaunay) {
   const std::string group = "slivers";
-  for (const auto& [name, height] : {std::pair{"a layer 1e-9 Å high", 1e-9}, std::pair{"a layer 1e-6 Å high", 1e-6}}) {
+  for (const auto& [name, height] : {std::pair{"a layer 1e-9 Å high", 1e-9}, std::pair{"a layer 1e-6 Å high", 1e-6},
+                                     std::pair{"a layer 1e-4 Å high", 1e-4}}) {
     GridPlanes planes = even_planes(4, 1.0);
     planes.z = {0.0, 1.0, 1.0 + height, 2.0, 3.0};
     Material material = grid_material(planes, CubeSplit::six);
@@ -289,6 +290,26 @@ void add_eyes(std::vector<HardCase>& cases) {
   cases.push_back(make_case(group, "64 cells about one edge", std::move(fan), std::move(solid), std::move(views)));
 }
 
+// A cell that reaches past the eye, whose centroid is beside it: in the picture's plane it is seen infinitely far away.
+void add_level_eye(std::vector<HardCase>& cases) {
+  Material material = one_cell_material(1.0);
+  const Vec3 corner(-10.0);
+  material.mesh.vertices = {corner, corner + Vec3(40, 0, 0), corner + Vec3(0, 40, 0), corner + Vec3(0, 0, 40)};
+  material.atoms.positions = material.mesh.vertices;
+  std::vector<HardView> views;
+  for (const auto& [name, before] : {std::pair{"0.1 Å before it", 0.1}, std::pair{"0.001 Å before it", 1e-3},
+                                     std::pair{"level", 0.0}, std::pair{"0.001 Å behind it", -1e-3}}) {
+    for (const auto& [width, pixel] :
+         {std::pair{"narrow", 1.0 / 1024.0}, std::pair{"wide", 0.01}, std::pair{"very wide", 0.05}}) {
+      views.push_back({std::string(name) + ", " + width,
+                       camera_at(Projection::perspective, {-5.0, 1.0, -before}, z_up, {0, 1, 0}, 0.0, pixel, 64)});
+    }
+  }
+  Solid solid = solid_of_cells(material.mesh);
+  cases.push_back(make_case("the eye on a vertex, on an edge, in a face", "eye level with the centroid of its cell",
+                            std::move(material), std::move(solid), std::move(views)));
+}
+
 void add_disorder(std::vector<HardCase>& cases) {
   const auto add = [&](const char* group, const char* name, Material material, bool from_the_front) {
     std::vector<HardView> views = generic_views(material);
@@ -399,6 +420,7 @@ std::vector<HardCase> hard_cases(const DelaunayMesher& delaunay) {
   add_sizes(cases);
   add_holes(cases);
   add_eyes(cases);
+  add_level_eye(cases);
   add_disorder(cases);
   add_behind(cases);
   add_needles(cases);

@@ -67,7 +67,8 @@ struct HardCase {
 using DelaunayMesher = std::function<std::vector<Tetrahedron>(std::span<const Vec3>)>;
 
 // The catalogue: rays on a perfect lattice, slivers, offsets, extinctions, one cell and too many, holes, the eye on a
-// vertex, rings of visibility, overlapping cells, cells behind the eye, needles.
+// vertex, level
+// with its cell's centroid, rings of visibility, overlapping cells, cells behind the eye, needles.
 std::vector<HardCase> hard_cases(const DelaunayMesher& delaunay);
 
 }  // namespace atomesh

@@ -58,6 +58,7 @@ void bench_error(const RenderBenchOptions& options, Session& session, BenchResul
                                  nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
   }
   RenderBench bench(options, session, result);
+  if (options.full) bench.judge = BenchJudge(1);
   for (const Part& part : parts) {
     const bool wanted = options.parts.empty() ||
                         std::find(options.parts.begin(), options.parts.end(), part.name) != options.parts.end();
@@ -69,9 +70,11 @@ void bench_error(const RenderBenchOptions& options, Session& session, BenchResul
   BenchTable requirements = result.requirements();
   requirements.caption += fmt::format(
       " Errors: the largest difference of a channel of premultiplied RGB and coverage, in [0,1], from the judge "
-      "(renderer \"reference\": double precision, exact), who looks at every 32nd pixel. {}. Commit {}. Made by "
-      "`atomesh bench error{}`.",
-      machine_name(), build_commit(), options.full ? " --full" : "");
+      "(renderer \"reference\": double precision, exact), who looks at {}; in the hard cases at every pixel. {}. "
+      "Commit "
+      "{}. Made by `atomesh bench error{}`.",
+      options.full ? "every pixel" : "one pixel in 32, 3 % of a picture (with --full at every one)", machine_name(),
+      build_commit(), options.full ? " --full" : "");
   result.tables.push_back(std::move(requirements));
   session.print_text(result.text(result.tables.size() - 1));
   // Who reads the file wants the outcome first.

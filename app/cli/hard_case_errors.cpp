@@ -86,9 +86,11 @@ LengthError KnownLengths::of_optical_depth(double extinction, const Image& image
     const Range& chord = chords_[pixel];
     const Vec4f color = image.pixels[pixel];
     const double red = color.r;
-    error.color = std::max({error.color, std::abs(red - static_cast<double>(color.a)),
-                            std::abs(0.5 * red - static_cast<double>(color.g)),
-                            std::abs(0.25 * red - static_cast<double>(color.b))});
+    for (const double off : {red - static_cast<double>(color.a), 0.5 * red - static_cast<double>(color.g),
+                             0.25 * red - static_cast<double>(color.b)}) {
+      // What is not a number is as wrong as can be.
+      error.color = std::max(error.color, std::isfinite(off) ? std::abs(off) : 1.0);
+    }
     if (extinction * chord.low <= 3.0) {
       const double depth = -std::log1p(-std::min(red, 1.0));
       // Half a unit in the last place of the float that the picture holds is not the renderer's.
@@ -143,6 +145,17 @@ LengthError KnownLengths::of_crossing(const std::vector<float>& depth) const {
     }
   }
   return error;
+}
+
+double outside_of_colors(const Image& image) {
+  double most = 0.0;
+  for (const Vec4f& pixel : image.pixels) {
+    for (int k = 0; k < 4; ++k) {
+      const double value = pixel[k];
+      most = std::max(most, std::isfinite(value) ? std::max(-value, value - 1.0) : 1.0);
+    }
+  }
+  return most;
 }
 
 Camera moved_beside(const Camera& camera, double columns, double rows) {

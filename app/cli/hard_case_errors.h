@@ -73,6 +73,9 @@ class KnownLengths {
   std::vector<Range> chords_;
 };
 
+// How far channels are outside of [0,1], 1 where one is not a number: for cases of which nothing else is known.
+double outside_of_colors(const Image& image);
+
 // The judge's picture of varying_density() along rays within `beside` pixels of the centre, as far as needed to say how
 // far `image` is off the nearest of them.
 struct VariedError {

@@ -31,9 +31,10 @@ std::string_view vtk_mapper_name(VtkMapper mapper);
 //     unit distance is 1 / alpha_length. Where colour and opacity have knots their cells are cut there, projected
 //     tetrahedra excepted, which know the colours of the vertices only.
 //   - The window is cleared to transparent black, and what is read is premultiplied RGB and coverage.
-//   - One ray a pixel (image sample distance 1, not adjusted). Ray cast and Z sweep cast it through the pixel's lower
-//     left corner: the camera is moved by half a pixel so that it is our centre. On the window their picture is
-//     stretched by half a pixel and thereby blurred; what is taken is the mapper's own picture, before that.
+//   - One ray a pixel (image sample distance 1, not adjusted). Ray cast casts it through the pixel's lower left corner:
+//     the camera is moved by half a pixel so that it is our centre. Z sweep moves vertices to whole pixels, and its
+//     camera is ours. On the window the pictures of both are stretched by half a pixel and thereby blurred; what is
+//     taken is the mapper's own picture, before that.
 //   - Near and far plane stand close about the sample.
 // What remains is VTK's own: ray cast ends a ray at opacity 0.99 and cuts channels off to 8 bits; projected tetrahedra
 // blend in float and hand over 8 bits; Z sweep's are float.

@@ -184,5 +184,58 @@ TEST(Integrators, SamplesOfASmoothFieldConvergeAtSecondOrder) {
   }
 }
 
+// Where the light is linear in the map, straight between the cell's ends, the integrators that take it so are exact:
+// linear up to rounding, preintegrated up to its table.
+TEST(Integrators, LinearAndPreintegratedAreTheJudgesWhereTheMapHasNoKnots) {
+  const Material material = box_material(3, 3, 3, 2.0, shaking(0.35, 7));
+  for (const double alpha_length : {1e-2, 1.0, 10.0}) {
+    Parameters parameters = looking(Mode::volume, "iso", Projection::perspective);
+    parameters.volume.alpha_length = alpha_length;
+    parameters.volume.color_map = {{{0.0, Vec4f(0.1, 0.9, 0.3, 0.2)}, {1.0, Vec4f(1, 0.2, 0, 1)}}};
+    Scene scene = make_scene(material, parameters);
+    std::mt19937 random(5);
+    for (float& scalar : scene.scalars) scalar = static_cast<float>(random()) * 0x1p-32F;
+    const Camera camera = make_camera(parameters, scene.bounds, 24, 24);
+    const Camera beside =
+        nudged(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
+    const Image judge = draw(reference_renderer(), scene, beside, parameters).image;
+    for (const auto& [integrator, most] :
+         {std::pair{Integrator::linear, 1e-5}, std::pair{Integrator::preintegrated, 1e-5}}) {
+      parameters.integrator = integrator;
+      on_every_kernel([&] {
+        const double off = compare_images(judge, picture(scene, camera, parameters)).max;
+        EXPECT_LE(off, most) << alpha_length << " integrator " << static_cast<int>(integrator);
+      });
+    }
+  }
+}
+
+// Order of the mean error of the sampled integrator, from 8 to 64 samples a cell, with this colour map.
+double order_of_samples(const ColorMap& map) {
+  const Material material = box_material(2, 2, 2, 2.0, shaking(0.3, 9));
+  Parameters parameters = looking(Mode::volume, "iso", Projection::perspective);
+  parameters.volume.alpha_length = 0.3;
+  parameters.volume.color_map = map;
+  Scene scene = make_scene(material, parameters);
+  std::mt19937 random(13);
+  for (float& scalar : scene.scalars) scalar = static_cast<float>(random()) * 0x1p-32F;
+  const Camera camera = make_camera(parameters, scene.bounds, 96, 96);
+  const Image exact = picture(scene, camera, parameters);
+  parameters.integrator = Integrator::sampled;
+  std::vector<double> errors;
+  for (const int samples : {8, 64}) {
+    parameters.samples_per_cell = samples;
+    errors.push_back(compare_images(exact, picture(scene, camera, parameters)).rmse);
+  }
+  return std::log(errors[0] / errors[1]) / std::log(8.0);
+}
+
+TEST(Integrators, SamplesConvergeAtSecondOrderWhereTheMapBendsAndAtFirstWhereItJumps) {
+  const Vec4f dark(0.1, 0.2, 0.9, 0.2);
+  const Vec4f bright(1.0, 0.8, 0.1, 0.9);
+  EXPECT_NEAR(order_of_samples({{{0.0, dark}, {0.45, bright}, {1.0, dark}}}), 2.0, 0.2);
+  EXPECT_NEAR(order_of_samples({{{0.0, dark}, {0.45, dark}, {0.45, bright}, {1.0, bright}}}), 1.0, 0.2);
+}
+
 }  // namespace
 }  // namespace atomesh::test
