@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/image.h"
@@ -60,7 +62,10 @@ class KnownLengths {
   struct Range {
     double low;
     double high;
-    double off(double value) const { return std::max({0.0, low - value, value - high}); }
+    // Infinity for what is not a number.
+    double off(double value) const {
+      return std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max({0.0, low - value, value - high});
+    }
   };
   template <class Known>
   Range around(int column, int row, Known known) const;

@@ -258,6 +258,28 @@ TEST_P(HardCases, VaryingValuesAreTheJudges) {
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::Range(0, case_count));
 
+TEST(HardCaseCatalogue, WhatIsNotANumberIsWrong) {
+  const HardCase& hard = catalogue().front();
+  const Camera& camera = hard.views.front().camera;
+  const KnownLengths known(hard, camera, fast_beside);
+  const double extinction = hard.extinctions.front();
+  const Parameters parameters = constant_density(Mode::volume, extinction);
+  const Scene scene = make_scene(hard.material, parameters);
+  const Image image = draw("cpu", scene, camera, parameters).image;
+  JudgedRays judge(scene, camera, parameters, fast_beside);
+  for (int k = 0; k < 4; ++k) {
+    Image wrong = image;
+    wrong.pixels[40][k] = std::numeric_limits<float>::quiet_NaN();
+    const LengthError error = known.of_optical_depth(extinction, wrong);
+    EXPECT_GT(std::max({error.relative, error.granted, error.color}), 0.5) << k;
+    EXPECT_GT(judge.error(wrong).nearest, 0.5) << k;
+    EXPECT_GT(outside_of_colors(wrong), 0.5) << k;
+  }
+  std::vector<float> thickness(image.pixels.size(), std::numeric_limits<float>::quiet_NaN());
+  const LengthError error = known.of_thickness(thickness);
+  EXPECT_TRUE(std::isinf(error.relative) || std::isinf(error.granted));
+}
+
 // A perfect crystal of which preprocessing left as few cells as it can.
 TEST(HardCaseCatalogue, ASimplifiedLatticeIsStillFilled) {
   const auto whole = std::find_if(catalogue().begin(), catalogue().end(),
