@@ -322,8 +322,8 @@ std::string from_base64(std::string_view text, std::size_t bytes) {
   return result;
 }
 
-// Of packed data in XML: each array begins with the number of its blocks, their size and that of the last, for which
-// VTK makes room.
+// Of packed data in XML: each array begins with the number of its blocks, their size and that of the last where it is
+// smaller (else 0), and then the size of each as it is packed. VTK makes room for all of them before it looks further.
 class PackedXmlCheck {
  public:
   PackedXmlCheck(std::string_view bytes, std::string_view tag, const std::string& path)
@@ -338,7 +338,7 @@ class PackedXmlCheck {
          at = bytes_.find(inline_data, at + 1)) {
       std::string_view text = bytes_.substr(std::min(bytes_.find('>', at), bytes_.size() - 1) + 1);
       text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-      check(from_base64(text, 3 * word_));
+      check(text.substr(0, text.find('<')), false);
     }
     const std::size_t appended = bytes_.find("<AppendedData");
     if (appended == std::string_view::npos) return;
@@ -353,28 +353,58 @@ class PackedXmlCheck {
           static_cast<std::uint64_t>(offset) >= bytes_.size() - std::min(data, bytes_.size())) {
         throw InputError(path_, 0, "damaged or incomplete: an array begins behind the end of the file");
       }
-      const std::string_view array = bytes_.substr(data + static_cast<std::size_t>(offset));
-      check(raw ? std::string(array.substr(0, 3 * word_)) : from_base64(array, 3 * word_));
+      check(bytes_.substr(data + static_cast<std::size_t>(offset)), raw);
     }
   }
 
  private:
-  void check(const std::string& header) const {
-    const auto number = [&](std::size_t at) {
-      std::uint64_t value = 0;
-      for (std::size_t b = 0; b < word_; ++b) {
-        const std::size_t byte = at * word_ + (big_endian_ ? b : word_ - 1 - b);
-        value = value << 8U | static_cast<unsigned char>(header[byte]);
-      }
-      return value;
+  // `text` begins with the array and may go on behind it.
+  void check(std::string_view text, bool raw) const {
+    const auto fail = [&] {
+      throw InputError(path_, 0, "damaged or incomplete: an array's blocks are not of a size that can be in it");
     };
-    if (header.size() >= word_ && number(0) == 0) return;  // an array of nothing
+    std::string header;
+    const auto read_words = [&](std::uint64_t words) {
+      header = raw ? std::string(text.substr(0, words * word_)) : from_base64(text, words * word_);
+      return header.size() == words * word_;
+    };
+    if (!read_words(3)) {
+      if (read_words(1) && number(header, 0) == 0) return;  // an array of nothing
+      fail();
+    }
+    // VTK takes the difference of a last block and a full one off the bytes of none.
+    if (number(header, 0) == 0 && number(header, 2) != 0) fail();
+    if (number(header, 0) == 0) return;
+    const std::uint64_t blocks = number(header, 0);
+    const std::uint64_t block_size = number(header, 1);
+    const std::uint64_t last_size = number(header, 2) == 0 ? block_size : number(header, 2);
     // No packing makes more than some thousand bytes of one.
     const std::uint64_t most = 1000000 + 8192 * bytes_.size();
-    if (header.size() < 3 * word_ || number(0) > bytes_.size() || number(1) > most || number(2) > number(1) ||
-        number(0) * number(1) > most) {
-      throw InputError(path_, 0, "damaged or incomplete: an array's blocks are not of a size that can be in it");
+    if (blocks > bytes_.size() / word_ || block_size == 0 || block_size > most || last_size > block_size ||
+        blocks * block_size > most || !read_words(3 + blocks)) {
+      fail();
     }
+    // In base64 the header is packed by itself, up to whole groups of four characters.
+    const std::uint64_t behind =
+        raw ? text.size() - header.size()
+            : (text.size() - std::min<std::uint64_t>((header.size() + 2) / 3 * 4, text.size())) / 4 * 3;
+    std::uint64_t left = behind;
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+      const std::uint64_t size = number(header, static_cast<std::size_t>(3 + block));
+      const std::uint64_t unpacked = block + 1 == blocks ? last_size : block_size;
+      // What cannot be packed grows by its packing's own marks.
+      if (size == 0 || size > left || size > unpacked + unpacked / 64 + 1024 || unpacked > 65536 + 8192 * size) fail();
+      left -= size;
+    }
+  }
+
+  std::uint64_t number(const std::string& header, std::size_t at) const {
+    std::uint64_t value = 0;
+    for (std::size_t b = 0; b < word_; ++b) {
+      const std::size_t byte = at * word_ + (big_endian_ ? b : word_ - 1 - b);
+      value = value << 8U | static_cast<unsigned char>(header[byte]);
+    }
+    return value;
   }
 
   std::string_view bytes_;

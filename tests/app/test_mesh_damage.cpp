@@ -227,6 +227,61 @@ TEST(MeshDamage, HugeCountsAreRefusedAndNamed) {
   }
 }
 
+// As write_vtu() packs them: the first array of its appended data has one block, whose size stands fourth.
+TEST(MeshDamage, SizesOfPackedBlocksThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  const std::string sound = appended_vtu(folder);
+  const std::size_t data = sound.find('_', sound.find("<AppendedData")) + 1;
+  ASSERT_NE(sound.find("compressor="), std::string::npos);
+  const std::size_t word = sound.find("UInt64") < sound.find("<Piece") ? 8 : 4;
+  const auto number = [&](std::size_t at) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, sound.data() + data + at * word, word);
+    return value;
+  };
+  ASSERT_EQ(number(0), 1U);
+  const auto with = [&](std::size_t at, std::uint64_t value) {
+    std::string damaged = sound;
+    std::memcpy(damaged.data() + data + at * word, &value, word);
+    return refusal(folder.file("a.vtu", damaged), "a.vtu");
+  };
+  EXPECT_EQ(with(3, number(3)), "");
+  const std::string said = "an array's blocks are not of a size that can be in it";
+  const std::uint64_t unpacked = number(2) > 0 ? number(2) : number(1);
+  for (const std::uint64_t size : {std::uint64_t{0}, unpacked + unpacked / 64 + 1025, std::uint64_t{sound.size()},
+                                   std::uint64_t{0x7FFFFFFF}, std::uint64_t{0xFFFFFFFF}}) {
+    EXPECT_NE(with(3, size).find(said), std::string::npos) << size;
+  }
+  // No block, but a last one; blocks of no size, a last one larger than the others, and more of them than the sizes
+  // that follow.
+  EXPECT_NE(with(0, 0).find(said), std::string::npos);
+  EXPECT_NE(with(1, 0).find(said), std::string::npos);
+  EXPECT_NE(with(2, number(1) + 1).find(said), std::string::npos);
+  EXPECT_NE(with(0, sound.size()).find(said), std::string::npos);
+  // Cut within the sizes.
+  EXPECT_NE(refusal(folder.file("a.vtu", sound.substr(0, data + 3 * word + 2)), "a.vtu"), "");
+}
+
+// Every byte of the headers changed to every kind of value.
+TEST(MeshDamage, PackedHeadersOfAnyNumbersAreReadSoundOrRefused) {
+  const TemporaryFolder folder;
+  const std::string sound = appended_vtu(folder);
+  const std::size_t data = sound.find('_', sound.find("<AppendedData")) + 1;
+  const std::string name = " offset=\"";
+  std::size_t refused = 0;
+  for (std::size_t at = sound.find(name); at < data; at = sound.find(name, at + 1)) {
+    const std::size_t array = data + std::stoul(sound.substr(at + name.size(), 20));
+    for (std::size_t byte = array; byte < std::min(array + 32, sound.size()); ++byte) {
+      for (const int value : {0, 1, 0x7F, 0x80, 0xFF}) {
+        std::string damaged = sound;
+        damaged[byte] = static_cast<char>(value);
+        refused += refusal(folder.file("a.vtu", damaged), "a.vtu").empty() ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100U);
+}
+
 TEST(MeshDamage, VtkSaysNothingByItself) {
   const TemporaryFolder folder;
   ::testing::internal::CaptureStderr();
