@@ -43,6 +43,9 @@ struct MeshCells {
   std::vector<std::string> notes;
 };
 
+// The block behind those that are there already.
+void add_block(MeshCells& cells, const std::array<std::uint64_t, 3>& points);
+
 // A number for each point or cell as fields: of vectors the magnitude under their name and the components under it with
 // _x, _y, _z; of up to nine numbers the components with _0, _1, …. `value(i, component)` is called for all of them.
 // False, and nothing added, for more.

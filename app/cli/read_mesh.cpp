@@ -68,6 +68,17 @@ std::string solution_beside(const std::string& path) {
 
 }  // namespace
 
+void add_block(MeshCells& cells, const std::array<std::uint64_t, 3>& points) {
+  StructuredBlock block{points};
+  if (!cells.blocks.empty()) {
+    const StructuredBlock& before = cells.blocks.back();
+    const auto& [i, j, k] = before.points;
+    block.first_point = before.first_point + i * j * k;
+    block.first_cell = before.first_cell + (i - 1) * (j - 1) * (k - 1);
+  }
+  cells.blocks.push_back(block);
+}
+
 bool is_mesh_file(const std::string& path) {
   return !format_of(path).empty();
 }

@@ -1,115 +1,28 @@
-// .vtu, legacy .vtk and PLOT3D by VTK's readers. What VTK says goes into exceptions and notes, not to the terminal.
-#include <vtkCallbackCommand.h>
+// .vtu and legacy .vtk by VTK's readers.
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataSetReader.h>
 #include <vtkIdTypeArray.h>
 #include <vtkImageData.h>
-#include <vtkIntArray.h>
-#include <vtkLogger.h>
-#include <vtkMultiBlockDataSet.h>
-#include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
-#include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
-#include <vtkSmartPointer.h>
 #include <vtkStructuredGrid.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include <filesystem>
 #include <optional>
-#include <regex>
 
 #include "app/cli/check_vtk_file.h"
 #include "app/cli/mesh_cells.h"
-#include "app/cli/plot3d_layout.h"
+#include "app/cli/run_vtk_reader.h"
 #include "core/error.h"
-#include "core/text_file.h"
 
 namespace atomesh::cli {
 
 namespace {
-
-// Keeps what VTK would print.
-class SilentWindow : public vtkOutputWindow {
- public:
-  static SilentWindow* New();
-  // clang-format off
-  vtkTypeMacro(SilentWindow, vtkOutputWindow)
-      // clang-format on
-      void DisplayText(const char* text) override {
-    take(text, false);
-  }
-  void DisplayErrorText(const char* text) override { take(text, true); }
-  void DisplayWarningText(const char* text) override { take(text, false); }
-  void DisplayGenericWarningText(const char* text) override { take(text, true); }
-  void DisplayDebugText(const char*) override {}
-
-  std::string first_error;
-  std::string first_warning;
-
- private:
-  // "ERROR: In FILE, line N\nvtkSomething (0x…): what it is about\n\n" → "what it is about"
-  void take(const char* text, bool error) {
-    std::string& kept = error ? first_error : first_warning;
-    if (!kept.empty() || text == nullptr) return;
-    static const std::regex place(R"(^(ERROR|Warning|Generic Warning): In [^\n]*\n)");
-    static const std::regex object(R"(^[A-Za-z0-9_]+ \((0x)?[0-9a-fA-F]+\): )");
-    kept = std::regex_replace(std::regex_replace(std::string(text), place, ""), object, "");
-    std::replace(kept.begin(), kept.end(), '\n', ' ');
-    kept.erase(kept.find_last_not_of(' ') + 1);
-    // Where VTK only says which of its objects failed.
-    if (kept.empty() || kept.find("(0x") != std::string::npos) kept = "what is announced is not in it";
-  }
-};
-vtkStandardNewMacro(SilentWindow);
-
-// VTK has one window and one log for the whole program: ours, and none, while this lives.
-class Silence {
- public:
-  Silence() : before_(vtkOutputWindow::GetInstance()), verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
-    vtkOutputWindow::SetInstance(window_);
-    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  }
-  ~Silence() {
-    vtkOutputWindow::SetInstance(before_);
-    vtkLogger::SetStderrVerbosity(verbosity_);
-  }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-  const SilentWindow& window() const { return *window_; }
-
- private:
-  vtkNew<SilentWindow> window_;
-  vtkSmartPointer<vtkOutputWindow> before_;
-  vtkLogger::Verbosity verbosity_;
-};
-
-// Runs a reader: cancellable, its complaints InputErrors.
-void run(vtkAlgorithm& reader, const std::string& path, Progress& progress, std::vector<std::string>& notes) {
-  const Silence silence;
-  vtkNew<vtkCallbackCommand> watch;
-  watch->SetClientData(&progress);
-  watch->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    if (static_cast<const Progress*>(data)->cancelled()) static_cast<vtkAlgorithm*>(caller)->AbortExecuteOn();
-  });
-  reader.AddObserver(vtkCommand::ProgressEvent, watch);
-  try {
-    reader.Update();
-  } catch (const std::bad_alloc&) {
-    throw InputError(path, 0, "asks for more memory than there is; it is damaged, or too large for this machine");
-  }
-  progress.check();
-  const std::string& error = silence.window().first_error;
-  if (!error.empty()) throw InputError(path, 0, "damaged or incomplete: " + error);
-  const std::string& warning = silence.window().first_warning;
-  if (!warning.empty()) notes.push_back("reading " + path + ": " + warning);
-}
 
 // ---- fields
 
@@ -338,19 +251,6 @@ void add_unstructured(MeshCells& cells, vtkUnstructuredGrid& grid, const std::st
   add_attributes(cells, grid, cells.points.size(), list.count());
 }
 
-void add_block(MeshCells& cells, const int (&dimensions)[3]) {
-  StructuredBlock block;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    block.points[axis] = static_cast<std::uint64_t>(std::max(dimensions[axis], 0));
-  }
-  if (!cells.blocks.empty()) {
-    const StructuredBlock& before = cells.blocks.back();
-    block.first_point = before.first_point + before.points[0] * before.points[1] * before.points[2];
-    block.first_cell = before.first_cell + (before.points[0] - 1) * (before.points[1] - 1) * (before.points[2] - 1);
-  }
-  cells.blocks.push_back(block);
-}
-
 MeshCells cells_of(vtkDataSet* data, const std::string& path, MeshCells cells, Progress& progress) {
   if (data == nullptr) throw InputError(path, 0, "damaged or incomplete: there is nothing in it");
   check_count(data->GetNumberOfPoints(), path);
@@ -370,7 +270,9 @@ MeshCells cells_of(vtkDataSet* data, const std::string& path, MeshCells cells, P
                      std::string("holds ") + data->GetClassName() +
                          "; expected a grid with volume: unstructured, structured, rectilinear or an image");
   }
-  add_block(cells, dimensions);
+  std::array<std::uint64_t, 3> points{};
+  for (std::size_t axis = 0; axis < 3; ++axis) points[axis] = static_cast<std::uint64_t>(std::max(dimensions[axis], 0));
+  add_block(cells, points);
   const auto& [i, j, k] = cells.blocks.back().points;
   if (static_cast<std::uint64_t>(data->GetNumberOfPoints()) != i * j * k) {
     throw InputError(path, 0, "the number of points does not match the dimensions");
@@ -381,49 +283,6 @@ MeshCells cells_of(vtkDataSet* data, const std::string& path, MeshCells cells, P
   return cells;
 }
 
-// ---- PLOT3D
-
-// Density, momentum and energy, and the pressure of an ideal gas where those allow one everywhere.
-void add_solution(MeshCells& cells, vtkPointData& data, std::size_t count, const std::string& path) {
-  vtkDataArray* density = data.GetArray("Density");
-  vtkDataArray* momentum = data.GetArray("Momentum");
-  vtkDataArray* energy = data.GetArray("StagnationEnergy");
-  for (vtkDataArray* array : {density, momentum, energy}) {
-    if (array == nullptr || array->GetNumberOfTuples() != static_cast<vtkIdType>(count)) {
-      throw InputError(path, 0, "damaged or incomplete: no density, momentum and energy at each point");
-    }
-  }
-  const auto value = [](vtkDataArray* array) {
-    return [array](std::size_t i, int c) { return array->GetComponent(static_cast<vtkIdType>(i), c); };
-  };
-  std::vector<VertexField> fields;
-  add_fields(fields, "Density", count, 1, value(density));
-  add_fields(fields, "Energy", count, 1, value(energy));
-  add_fields(fields, "Momentum", count, 3, value(momentum));
-  constexpr double gamma = 1.4;
-  VertexField pressure{"Pressure", std::vector<float>(count)};
-  bool sensible = true;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double rho = fields[0].values[i];
-    const double m = fields[2].values[i];
-    const double p = (gamma - 1.0) * (fields[1].values[i] - 0.5 * m * m / rho);
-    sensible = sensible && rho > 0.0 && p > 0.0;
-    pressure.values[i] = static_cast<float>(p);
-  }
-  if (sensible) fields.push_back(std::move(pressure));
-  // Blocks follow one another; a pressure that one of them has not is left out of all.
-  if (cells.blocks.size() == 1) {
-    cells.point_fields = std::move(fields);
-    return;
-  }
-  const std::size_t shared = std::min(cells.point_fields.size(), fields.size());
-  cells.point_fields.resize(shared);
-  for (std::size_t f = 0; f < shared; ++f) {
-    auto& all = cells.point_fields[f].values;
-    all.insert(all.end(), fields[f].values.begin(), fields[f].values.end());
-  }
-}
-
 }  // namespace
 
 MeshCells read_vtk_cells(const std::string& path, const std::string& format, Progress& progress) {
@@ -432,7 +291,7 @@ MeshCells read_vtk_cells(const std::string& path, const std::string& format, Pro
   if (format == "vtu") {
     vtkNew<vtkXMLUnstructuredGridReader> reader;
     reader->SetFileName(path.c_str());
-    run(*reader, path, progress, cells.notes);
+    run_vtk_reader(*reader, path, progress, cells.notes);
     return cells_of(reader->GetOutput(), path, std::move(cells), progress);
   }
   vtkNew<vtkDataSetReader> reader;
@@ -444,67 +303,8 @@ MeshCells read_vtk_cells(const std::string& path, const std::string& format, Pro
   reader->ReadAllTCoordsOn();
   reader->ReadAllColorScalarsOn();
   reader->ReadAllFieldsOn();
-  run(*reader, path, progress, cells.notes);
+  run_vtk_reader(*reader, path, progress, cells.notes);
   return cells_of(reader->GetOutput(), path, std::move(cells), progress);
-}
-
-MeshCells read_plot3d_cells(const std::string& path, const std::string& solution, Progress& progress) {
-  const MappedFile file(path);
-  const auto layout = find_plot3d_layout(file.bytes());
-  if (!layout) {
-    if (is_plot3d_solution(file.bytes())) {
-      throw InputError(path, 0, "is a PLOT3D solution; give the grid that it belongs to");
-    }
-    throw InputError(path, 0,
-                     "is no PLOT3D grid, or a truncated one: no byte order, records and precision account for "
-                     "its " +
-                         std::to_string(file.bytes().size()) + " bytes");
-  }
-  if (!solution.empty()) {
-    const MappedFile values(solution);
-    const std::string problem = plot3d_solution_problem(values.bytes(), *layout);
-    if (!problem.empty()) throw InputError(solution, 0, problem);
-  }
-  vtkNew<vtkMultiBlockPLOT3DReader> reader;
-  reader->AutoDetectFormatOff();
-  reader->SetXYZFileName(path.c_str());
-  if (!solution.empty()) reader->SetQFileName(solution.c_str());
-  reader->SetBinaryFile(layout->text ? 0 : 1);
-  reader->SetHasByteCount(layout->record_marks ? 1 : 0);
-  reader->SetMultiGrid(layout->multi_grid ? 1 : 0);
-  reader->SetIBlanking(layout->iblank ? 1 : 0);
-  reader->SetDoublePrecision(layout->double_precision ? 1 : 0);
-  if (layout->big_endian) {
-    reader->SetByteOrderToBigEndian();
-  } else {
-    reader->SetByteOrderToLittleEndian();
-  }
-  MeshCells cells;
-  run(*reader, path, progress, cells.notes);
-  vtkMultiBlockDataSet* output = reader->GetOutput();
-  if (output == nullptr || output->GetNumberOfBlocks() != layout->grids.size()) {
-    throw InputError(path, 0, "damaged or incomplete: not all grids are in it");
-  }
-  for (unsigned b = 0; b < output->GetNumberOfBlocks(); ++b) {
-    auto* grid = vtkStructuredGrid::SafeDownCast(output->GetBlock(b));
-    if (grid == nullptr) throw InputError(path, 0, "damaged or incomplete: grid " + std::to_string(b + 1));
-    int dimensions[3] = {0, 0, 0};
-    grid->GetDimensions(dimensions);
-    add_block(cells, dimensions);
-    add_points(cells, *grid, path);
-    const auto count = static_cast<std::size_t>(grid->GetNumberOfPoints());
-    if (!solution.empty()) add_solution(cells, *grid->GetPointData(), count, solution);
-    if (!layout->iblank) continue;
-    // 0 is no part of the grid; negative ones were interpolated from another grid and are as good as any.
-    auto* iblank = vtkIntArray::SafeDownCast(grid->GetPointData()->GetArray("IBlank"));
-    if (iblank == nullptr || iblank->GetNumberOfTuples() != grid->GetNumberOfPoints()) {
-      throw InputError(path, 0, "damaged or incomplete: the blanking of grid " + std::to_string(b + 1));
-    }
-    for (std::size_t p = 0; p < count; ++p) {
-      cells.blanked_points.push_back(iblank->GetValue(static_cast<vtkIdType>(p)) == 0);
-    }
-  }
-  return cells;
 }
 
 }  // namespace atomesh::cli

@@ -65,7 +65,7 @@ const std::vector<HeavyLibrary>& heavy_libraries() {
       {"spglib", std::regex("^spglib\\.h$"), {"preprocess"}},
       {"Embree", std::regex("^embree[0-9]/"), {"render"}},
       {"FreeType", std::regex("^(ft2build\\.h$|freetype/)"), {"render"}},
-      {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 4},  // a reader, a writer, and two peers of the benches
+      {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 6},  // three files of readers, a writer, and two peers of the benches
       {"toml++", std::regex("^toml(\\+\\+|plusplus|/|\\.)"), {"core"}},
       {"nlohmann-json", std::regex("^nlohmann/"), {"app"}},
       {"Qt", std::regex("^(Q[A-Z]|Qt)"), {"app"}},
@@ -85,7 +85,7 @@ const std::vector<SourceFile>& sources() {
     for (const auto& [room, others] : may_include) {
       for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
         const std::string extension = entry.path().extension().string();
-        if (extension != ".h" && extension != ".cpp" && extension != ".cu") continue;
+        if (extension != ".h" && extension != ".cpp" && extension != ".inl" && extension != ".cu") continue;
         std::ifstream source(entry.path());
         found.push_back({fs::relative(entry.path(), root).string(), room, includes_of(source)});
       }
@@ -212,7 +212,7 @@ TEST(House, NoFileOutgrowsItsIdea) {
   for (const SourceFile& file : sources()) {
     std::ifstream source(root / file.path);
     const auto lines = std::count(std::istreambuf_iterator<char>(source), std::istreambuf_iterator<char>(), '\n');
-    EXPECT_LE(lines, 600) << file.path << ": split it by idea";
+    EXPECT_LE(lines, 500) << file.path << ": split it by idea";
   }
 }
 
