@@ -4,8 +4,10 @@
 #include <cmath>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "app/cli/grid_seams.h"
+#include "app/cli/inner_walls.h"
 #include "app/cli/mesh_cells.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -66,7 +68,7 @@ class MeshBuilder {
   void for_each_cell(Visit&& visit) const {
     for (std::size_t c = 0; c < cells_.kinds.size(); ++c) {
       if (c % items_per_check == 0) progress_.check();
-      if (cells_.kinds[c] == FileCell::without_volume) continue;
+      if (cells_.kinds[c] == FileCell::without_volume || cells_.kinds[c] == FileCell::unknown) continue;
       visit(c, std::span(cells_.corners).subspan(cells_.first[c], cells_.first[c + 1] - cells_.first[c]), false);
     }
     for (const StructuredBlock& block : cells_.blocks) {
@@ -131,6 +133,7 @@ class MeshBuilder {
       fail(report_.blanked > 0 ? "all its cells are blanked" : "has no cells with volume; nothing can be drawn of it");
     }
     if (tetrahedra >= no_index) fail("more than 4,294,967,294 tetrahedra");
+    if (cells_.points.size() >= no_index) fail("more than 4,294,967,294 points");
     // The mesh, who shares its faces, and the points on their way to be vertices.
     require_memory("splitting " + std::to_string(report_.cells) + " cells into tetrahedra",
                    48 * tetrahedra + (64 + 8 * cells_.point_fields.size()) * cells_.points.size(),
@@ -138,10 +141,15 @@ class MeshBuilder {
   }
 
   void check_points() const {
+    // Volumes are third powers, which must be finite too.
+    constexpr double largest = 1e100;
     for (std::size_t p = 0; p < used_.size(); ++p) {
-      const Vec3& at = cells_.points[p];
-      if (!used_[p] || (std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z))) continue;
-      fail("a coordinate of point " + std::to_string(p) + " is not a finite number");
+      if (!used_[p]) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double c = cells_.points[p][axis];
+        if (!std::isfinite(c)) fail("a coordinate of point " + std::to_string(p) + " is not a finite number");
+        if (std::abs(c) > largest) fail("a coordinate of point " + std::to_string(p) + " is beyond 1e100");
+      }
     }
   }
 
@@ -183,26 +191,31 @@ class MeshBuilder {
 
   // ---- vertices
 
-  bool same_values(std::size_t a, std::size_t b) const {
-    return std::all_of(point_fields_.begin(), point_fields_.end(),
-                       [&](const VertexField* field) { return field->values[a] == field->values[b]; });
-  }
-
   // Points of one place and equal values become one vertex: grids that close on themselves, blocks that touch,
   // collapsed edges and cells that do not share their points hold together. Where the values differ there is a jump to
-  // keep.
+  // keep; any number of points may share a place, so the values are hashed too.
   void merge_points() {
+    const auto hash = [&](std::size_t p) {
+      std::uint64_t h = PositionHash{}(cells_.points[p]);
+      for (const VertexField* field : point_fields_) {
+        h = (h ^ std::bit_cast<std::uint32_t>(field->values[p] + 0.0F)) * 0x9E3779B97F4A7C15U;
+        h ^= h >> 32U;
+      }
+      return static_cast<std::size_t>(h);
+    };
+    const auto same = [&](std::size_t a, std::size_t b) {
+      return cells_.points[a] == cells_.points[b] &&
+             std::all_of(point_fields_.begin(), point_fields_.end(),
+                         [&](const VertexField* field) { return field->values[a] == field->values[b]; });
+    };
     vertex_of_.assign(cells_.points.size(), no_index);
-    std::unordered_map<Vec3, std::size_t, PositionHash> first;  // point
-    first.reserve(cells_.points.size());
-    std::unordered_map<std::size_t, std::size_t> next;  // another point of the same place
+    std::unordered_set<std::size_t, decltype(hash), decltype(same)> first(cells_.points.size(), hash, same);  // points
     for (std::size_t p = 0; p < used_.size(); ++p) {
       if (p % items_per_check == 0) progress_.check();
       if (!used_[p]) continue;
-      std::size_t at = first.try_emplace(cells_.points[p], p).first->second;
-      while (at != p && !same_values(at, p)) at = next.try_emplace(at, p).first->second;
-      if (at != p) {
-        vertex_of_[p] = vertex_of_[at];
+      const auto [at, fresh] = first.insert(p);
+      if (!fresh) {
+        vertex_of_[p] = vertex_of_[*at];
         ++merged_;
         continue;
       }
@@ -249,14 +262,19 @@ class MeshBuilder {
       pieces.clear();
       split_cell_into(cell, corners, odd, pieces);
       if (pieces.empty()) ++report_.flat;
+      std::uint64_t upright = 0;
+      std::uint64_t inside_out = 0;
       for (Tetrahedron& t : pieces) {
         const int sign = orientation(vertices[t[0]], vertices[t[1]], vertices[t[2]], vertices[t[3]]);
         report_.flat += sign == 0 ? 1 : 0;
         if (sign == 0) continue;
-        report_.turned += sign < 0 ? 1 : 0;
+        ++(sign < 0 ? inside_out : upright);
         if (sign < 0) std::swap(t[2], t[3]);
         m_.mesh.tetrahedra.push_back(t);
       }
+      // A cell all of whose pieces are inside out is listed so; one with pieces of both senses is folded.
+      if (upright == 0) report_.turned += inside_out;
+      folded_ += upright > 0 && inside_out > 0 ? 1 : 0;
       if (cell_fields_.empty()) return;
       for_each_corner(cell, corners, [&](std::uint64_t p) {
         ++touching[vertex_of_[p]];
@@ -377,8 +395,12 @@ class MeshBuilder {
     note(report_.flat, "flat tetrahedra were left out");
     note(report_.turned, report_.turned == report_.tetrahedra ? "tetrahedra, all of them, are listed inside out"
                                                               : "tetrahedra that are listed inside out were turned");
+    note(folded_, "cells are folded or not convex; their tetrahedra overlap");
     note(twins_, "tetrahedra that stand twice were left out once");
     note(overlapping_, "tetrahedra overlap another at a face; they got faces of their own, which the surface shows");
+    note(count_inner_walls(m_.surface, m_.mesh.vertices),
+         "faces of the surface lie back to back inside the mesh (hanging vertices, or faces that neighbours split "
+         "differently); they stay as inner walls");
     note(merged_, "points that repeat another's place and values were merged with it");
     if (m_.fields.empty()) {
       report_.notes.emplace_back("there is no scalar in it: mode volume shows nothing, the other modes its shape");
@@ -398,6 +420,7 @@ class MeshBuilder {
   std::unordered_map<std::uint64_t, unsigned> seams_;  // cells
   std::vector<Index> vertices_;                        // of the cell at hand
   std::uint64_t merged_ = 0;
+  std::uint64_t folded_ = 0;  // cells
   std::uint64_t twins_ = 0;
   std::uint64_t overlapping_ = 0;
   Material m_;

@@ -274,7 +274,10 @@ Command add_info(CLI::App& app) {
       ->required();
   add_mesh_options(app, arguments->mesh);
   add_pipeline_options(app, arguments->options);
-  app.footer("Example:\n  atomesh info nacl.crb --json -\n");
+  app.footer(
+      "Of a mesh file: vertices that hang in a neighbour's face, and faces that neighbours split differently, stay as "
+      "inner walls; a note counts them.\n\n"
+      "Example:\n  atomesh info nacl.crb --json -\n");
   return [arguments, &app](Session& session) { return run_info(*arguments, app, session); };
 }
 

@@ -15,7 +15,8 @@
 
 namespace atomesh::cli {
 
-enum class FileCell : std::uint8_t { without_volume, simple, polyhedron };
+// `unknown`: of a kind that is not read; the reader says so itself.
+enum class FileCell : std::uint8_t { without_volume, simple, polyhedron, unknown };
 
 // Points of one i-j-k grid, i fastest, in MeshCells::points from `first_point` on; its (n-1) products are the cells.
 struct StructuredBlock {
@@ -54,7 +55,7 @@ bool add_fields(std::vector<VertexField>& fields, const std::string& name, std::
                 Value&& value);
 
 // Splits, turns, merges and checks; fills in `report` but for its format. `path` is the file's name in messages. Throws
-// InputError for corners beyond the points, coordinates that are not finite, and a mesh without volume;
+// InputError for corners beyond the points, coordinates that are not finite or beyond 1e100, and a mesh without volume;
 // UnavailableError when there is not the memory.
 Material build_mesh(const MeshCells& cells, const std::string& path, MeshFileReport& report, Progress& progress);
 

@@ -21,7 +21,7 @@ struct MeshFileReport {
   std::uint64_t tetrahedra = 0;    // of the result
   std::uint64_t blanked = 0;       // cells that touch a blanked point
   std::uint64_t flat = 0;          // tetrahedra without volume, left out
-  std::uint64_t turned = 0;        // tetrahedra that the file lists inside out
+  std::uint64_t turned = 0;        // tetrahedra of cells that the file lists inside out
   std::uint64_t skipped = 0;       // cells without volume of their own: vertices, lines, triangles, …
   std::vector<std::string> notes;  // for people
 };
@@ -34,8 +34,9 @@ bool is_mesh_file(const std::string& path);
 // components; cell scalars averaged at the vertices). Hexahedra, voxels, wedges and pyramids are split into tetrahedra
 // so that neighbours agree on the diagonals of the faces they share: five to a hexahedron of a structured grid, turn
 // and turn about (six where a grid closes on itself out of turn); elsewhere by the smallest vertex number (Dompierre et
-// al. 1999, "How to subdivide pyramids, prisms and hexahedra into tetrahedra"). mesh.delaunay is false. Throws
-// InputError naming the file for anything damaged, empty or not finite.
+// al. 1999, "How to subdivide pyramids, prisms and hexahedra into tetrahedra"). Vertices that hang in a neighbour's
+// face and faces that neighbours split differently leave walls inside, part of the surface, which a note counts.
+// mesh.delaunay is false. Throws InputError naming the file for anything damaged, empty or not finite.
 Material read_mesh_file(const std::string& path, const MeshFileOptions& options, MeshFileReport& report,
                         Progress& progress = no_progress());
 

@@ -186,6 +186,7 @@ class GridCells {
       kind = FileCell::polyhedron;
       append_faces(c, cells);
     } else if (type == VTK_CONVEX_POINT_SET || type > VTK_HEXAGONAL_PRISM) {
+      kind = FileCell::unknown;
       ++unknown_;
     }
     cells.kinds.push_back(kind);
