@@ -399,8 +399,8 @@ class MeshBuilder {
     note(twins_, "tetrahedra that stand twice were left out once");
     note(overlapping_, "tetrahedra overlap another at a face; they got faces of their own, which the surface shows");
     note(count_inner_walls(m_.surface, m_.mesh.vertices),
-         "faces of the surface lie back to back inside the mesh (hanging vertices, or faces that neighbours split "
-         "differently); they stay as inner walls");
+         "faces of the surface lie back to back inside the mesh (hanging vertices, faces that neighbours split "
+         "differently, or values that jump); they stay as inner walls");
     note(merged_, "points that repeat another's place and values were merged with it");
     if (m_.fields.empty()) {
       report_.notes.emplace_back("there is no scalar in it: mode volume shows nothing, the other modes its shape");
