@@ -17,6 +17,7 @@ void bench_render_modes(RenderBench& bench) {
     for (const BenchView& view : bench.views(*data)) {
       const std::string label = name + ", " + view.name;
       for (const Mode mode : {Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms}) {
+        if (mode == Mode::atoms && data->material.atoms.size() == 0) continue;
         const Parameters seen = data->seen(view, mode);
         const Scene scene = make_scene(data->material, seen, progress);
         const Camera camera = make_camera(seen, scene.bounds, bench.width(512), bench.height(512));
