@@ -5,8 +5,8 @@
 // Entry (i, j) is ψ where γ(τ0) = i / (psi_size-1) and γ(τ1) = j / (psi_size-1), i outermost, with
 //   γ(τ) = τ (psi_bend + psi_deepest) / ((psi_bend + τ) psi_deepest),
 // 1 at the largest τ. The paper's own γ = τ / (1 + τ) over all of [0,∞) leaves a square root's corner where a
-// transparent end meets an opaque one, and bilinear interpolation is off by 0.014 there at 512 × 512; here no segment is
-// deeper than psi_deepest / 2 on average: of a deeper one, the part in front that deep stands for all of it. Between
+// transparent end meets an opaque one, and bilinear interpolation is off by 0.014 there at 512 × 512; here no segment
+// is deeper than psi_deepest / 2 on average: of a deeper one, the part in front that deep stands for all of it. Between
 // entries bilinear interpolation is off by at most 6e-6, and what lies behind adds at most e^-16 = 1.1e-7.
 #pragma once
 
