@@ -117,7 +117,7 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
     if (std::filesystem::equivalent(arguments.reference, arguments.output, ignored) ||
         writes_level(arguments.reference, arguments.output, arguments.picture)) {
       throw UsageError("--reference " + arguments.reference +
-                       ": is a picture that this writes; they would always agree");
+                       ": is a picture that -o or --keep-levels writes; they would always agree");
     }
     if (!std::filesystem::exists(arguments.reference)) {
       throw InputError(arguments.reference, 0, "does not exist; expected the picture to compare with");
