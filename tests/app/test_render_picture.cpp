@@ -75,7 +75,9 @@ TEST_F(RenderPicture, LargePicturesAreDrawnInPassesByThemselves) {
   EXPECT_NE(outcome.err.find("rows at a time"), std::string::npos) << outcome.err;
   const json report = json::parse(place->read("large.json"));
   EXPECT_GE(report["passes"]["count"].get<int>(), 4);
+#if !defined(__SANITIZE_ADDRESS__)  // whose allocator keeps what is freed
   EXPECT_LT(report["peak_memory_mb"].get<double>(), 200.0);
+#endif
   const Image image = picture("large.png");
   EXPECT_EQ(image.width, 10000);
   EXPECT_EQ(image.height, 1000);
