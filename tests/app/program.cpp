@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -34,7 +35,8 @@ std::string text_of(const fs::path& file) {
   redirect(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
   if (chdir(folder.c_str()) != 0) _exit(126);
   // A sanitizer's finding must not look like one of the program's own exit codes.
-  setenv("ASAN_OPTIONS", "exitcode=99", 1);
+  const char* const options = std::getenv("ASAN_OPTIONS");
+  setenv("ASAN_OPTIONS", ((options != nullptr ? std::string(options) + ":" : "") + "exitcode=99").c_str(), 1);
   setenv("UBSAN_OPTIONS", "exitcode=99", 1);
   std::vector<char*> words{const_cast<char*>("atomesh")};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
