@@ -50,13 +50,7 @@ double convergence_order(const std::vector<std::pair<int, double>>& points, doub
 }
 
 void bench_error(const RenderBenchOptions& options, Session& session, BenchResult& result) {
-  const std::vector<std::string> names = error_bench_parts();
-  for (const std::string& name : options.parts) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::string nearest = nearest_name(name, names);
-    throw UsageError(fmt::format("--part: there is no \"{}\"{}; there are: {}", name,
-                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
-  }
+  check_parts(options.parts, error_bench_parts());
   RenderBench bench(options, session, result);
   if (options.full) bench.judge = BenchJudge(1);
   for (const Part& part : parts) {

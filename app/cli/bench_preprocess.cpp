@@ -34,13 +34,7 @@ std::vector<std::string> preprocess_bench_parts() {
 }
 
 void bench_preprocess(const PreprocessBenchOptions& options, Session& session, BenchResult& result) {
-  const std::vector<std::string> names = preprocess_bench_parts();
-  for (const std::string& name : options.parts) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::string nearest = nearest_name(name, names);
-    throw UsageError(fmt::format("--part: there is no \"{}\"{}; there are: {}", name,
-                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
-  }
+  check_parts(options.parts, preprocess_bench_parts());
   for (const Part& part : parts) {
     const bool wanted = options.parts.empty() ||
                         std::find(options.parts.begin(), options.parts.end(), part.name) != options.parts.end();

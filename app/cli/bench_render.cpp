@@ -69,13 +69,7 @@ std::vector<BenchView> RenderBench::views(const BenchScene& scene) const {
 }
 
 void bench_render(const RenderBenchOptions& options, Session& session, BenchResult& result) {
-  const std::vector<std::string> names = render_bench_parts();
-  for (const std::string& name : options.parts) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::string nearest = nearest_name(name, names);
-    throw UsageError(fmt::format("--part: there is no \"{}\"{}; there are: {}", name,
-                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
-  }
+  check_parts(options.parts, render_bench_parts());
   RenderBench bench(options, session, result);
   for (const Part& part : parts) {
     const bool wanted = options.parts.empty() ||

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "app/cli/machine.h"
+#include "core/error.h"
 #include "core/memory.h"
 
 namespace atomesh::cli {
@@ -44,6 +45,15 @@ TemporaryFolder::TemporaryFolder()
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+}
+
+void check_parts(const std::vector<std::string>& parts, const std::vector<std::string>& names) {
+  for (const std::string& part : parts) {
+    if (std::find(names.begin(), names.end(), part) != names.end()) continue;
+    const std::string nearest = nearest_name(part, names);
+    throw UsageError(fmt::format("--part: there is no \"{}\"{}; there are: {}", part,
+                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
+  }
 }
 
 std::string short_number(double value) {

@@ -135,6 +135,9 @@ class BenchResult {
   std::vector<std::pair<std::string, std::string>> unmeasured_;  // what, option
 };
 
+// The words of --part. Throws UsageError naming the nearest for one that is none of `names`.
+void check_parts(const std::vector<std::string>& parts, const std::vector<std::string>& names);
+
 // About three significant digits: "0.042", "8.31", "1,234".
 std::string short_number(double value);
 
