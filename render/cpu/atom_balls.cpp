@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "render/cpu/ball_traversal.h"
 #include "render/shared/lights.h"
 #include "render/shared/materials.h"
@@ -13,10 +14,6 @@ namespace atomesh {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::unique_ptr<BallTraversal> make_traversal(const Scene& scene, const Camera& camera, const PixelWindow& window,
                                               BallSearch search, const Progress& progress) {

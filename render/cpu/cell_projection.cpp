@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "render/cpu/cell_bins.h"
 #include "render/cpu/cell_projection_kernel.h"
 #include "render/cpu/cell_projection_tile.h"
@@ -27,10 +28,6 @@ constexpr double plain_radii = 8.0;
 
 // A thread sets up at most so many cells of a tile at once, unless a single block has more.
 constexpr std::size_t cells_at_once = 32768;
-
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 View make_view(const Scene& scene, const Camera& camera) {
   View view{};

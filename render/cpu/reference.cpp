@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "render/cpu/reference_modes.h"
 
 namespace atomesh {
@@ -12,10 +13,6 @@ namespace {
 
 using namespace reference;
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // The scene's primitives over the window; lists the mode has no use for are empty.
 struct Candidates {

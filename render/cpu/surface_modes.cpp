@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "render/cpu/surface_shader.h"
 #include "render/cpu/tile_bins.h"
 #include "render/cpu/triangle_raster.h"
@@ -19,10 +20,6 @@ constexpr int tile_side = 32;
 constexpr std::size_t tile_pixels = std::size_t{tile_side} * tile_side;
 
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // The surface projected and sorted into tiles, which are counted from the window's corner: no pixel's value depends on
 // the tile it is in.
