@@ -96,17 +96,23 @@ MaterialParts parts_needed(const Parameters& parameters) {
   return parts;
 }
 
+Bounds sample_bounds(const Material& material, const Parameters& parameters) {
+  if (material.atoms.size() == 0) return bounds_of(material.mesh.vertices);
+  Bounds bounds = bounds_of(material.atoms.positions);
+  const Vec3 margin(largest_radius(material.atoms, parameters.atoms));
+  bounds.min -= margin;
+  bounds.max += margin;
+  return bounds;
+}
+
 Scene make_scene(const Material& material, const Parameters& parameters, Progress& progress) {
   progress.stage("scene");
   check_parts(material, parameters.mode, any_cut(parameters));
   Scene scene;
   scene.mode = parameters.mode;
-  scene.bounds = bounds_of(material.atoms.size() != 0 ? material.atoms.positions : material.mesh.vertices);
+  scene.bounds = sample_bounds(material, parameters);
   scene.center = scene.bounds.center();
   if (scene.mode == Mode::atoms) {
-    const Vec3 margin(largest_radius(material.atoms, parameters.atoms));
-    scene.bounds.min -= margin;
-    scene.bounds.max += margin;
     scene.balls = make_balls(material, parameters, scene.center);
   } else {
     add_mesh(scene, material, parameters, progress);

@@ -35,8 +35,7 @@ struct Ball {
 struct Scene {
   Mode mode = Mode::volume_surface;
   Vec3 center{0.0};  // Å, in the file's coordinates; subtract before converting to float
-  // Of the whole uncut sample, so that cutting does not move the camera; in mode atoms grown by the largest radius, so
-  // that no ball sticks out of the picture. In the file's coordinates.
+  // sample_bounds(): of the whole uncut sample, so that cutting does not move the camera.
   Bounds bounds;
   std::vector<Vec3f> vertices;         // about center
   Borrowable<Tetrahedron> tetrahedra;  // positively oriented
@@ -53,6 +52,11 @@ struct Scene {
   bool delaunay = false;              // see TetMesh::delaunay
   std::vector<Ball> balls;
 };
+
+// What the camera goes by, in the file's coordinates and the same in every mode, so that changing the mode does not
+// move it: the atoms' bounds, grown by the largest radius of a ball (hidden or not) so that none sticks out of the
+// picture; of a mesh without atoms, its vertices'.
+Bounds sample_bounds(const Material& material, const Parameters& parameters);
 
 // Which parts of a .crb the mode (with these cut planes) needs, for read_material().
 MaterialParts parts_needed(const Parameters& parameters);

@@ -190,8 +190,10 @@ TEST(Scene, CutPlanesTakeAtomsTetrahedraAndLeaveAClosedSurface) {
   EXPECT_EQ(scene.tetrahedra.size(), 2U * 4U * 3U * 6U);
   EXPECT_EQ(scene.surface.size(), 2U * 2U * (2U * 4U + 4U * 3U + 3U * 2U));
   EXPECT_TRUE(is_closed({scene.surface.own(), {}, {}}));
-  EXPECT_EQ(scene.bounds.max, Vec3(4.0));  // the camera does not move
+  const double radius = material.atoms.species_table.front().radius;
+  EXPECT_EQ(scene.bounds.max, Vec3(4.0 + radius));  // the camera does not move
   parameters.mode = Mode::xray;
+  EXPECT_EQ(make_scene(material, parameters).bounds.max, scene.bounds.max);  // nor with the mode
   EXPECT_EQ(make_scene(material, parameters).surface, scene.surface);
   parameters.mode = Mode::atoms;
   EXPECT_EQ(make_scene(material, parameters).balls.size(), 3U * 5U * 4U);

@@ -1,0 +1,55 @@
+// What is under the mouse: an atom or a cell, with all that is known of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/material.h"
+#include "core/parameters.h"
+#include "core/progress.h"
+#include "core/vertex_defects.h"
+#include "render/scene.h"
+
+namespace atomesh::gui {
+
+struct Neighbour {
+  Index atom;
+  double distance;  // Å, through periodic boundaries
+};
+
+struct Pick {
+  Vec3 position{0.0};  // Å: of the atom, else where the ray met the cell
+  Index atom = no_index;
+  Index tetrahedron = no_index;  // in the modes of the volume
+  Index triangle = no_index;     // in modes surface and xray
+  double depth = 0.0;            // along Camera::forward
+  // Of the atom; of a mesh without atoms, the field's value at `position`.
+  DefectValues defects;
+  std::optional<double> field;
+  std::vector<Neighbour> neighbours;  // of the atom, nearest first
+};
+
+// The nearest thing that pixel (column, row) of the camera's picture shows, or nothing.
+//   atoms:                  the ball the ray meets
+//   surface, xray:          the triangle it meets, and the nearest of its corners' atoms
+//   volume, volume-surface: the first cell by whose end the ray's opacity (with the faces', in volume-surface) has come
+//   to
+//                           `opacity`, or else the cell with the most of it; and the nearest of its corners' atoms
+// Throws CancelledError.
+std::optional<Pick> pick(const Material& material, const Scene& scene, const Camera& camera,
+                         const Parameters& parameters, int column, int row, double opacity = 0.05,
+                         Progress& progress = no_progress());
+
+// What is known of an atom: position, defects, and its neighbours up to the end of the first shell that is followed by
+// a gap (1.3 × the nearest distance), at most 32.
+Pick pick_atom(const Material& material, Index atom, Progress& progress = no_progress());
+
+// From a to b by the shortest way through the periodic boundaries of the box. Å.
+Vec3 shortest_way(const Box& box, const Vec3& a, const Vec3& b);
+
+// Label and value, one row each: "Species", "Na"; "Position", "1.000, 2.000, 3.000 Å"; … for the panel and for copying.
+std::vector<std::pair<std::string, std::string>> describe(const Pick& pick, const Material& material);
+
+}  // namespace atomesh::gui
