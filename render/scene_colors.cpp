@@ -17,6 +17,15 @@ Vec4f saturate(const Vec4f& sum) {
   return {color / brightest, std::clamp(sum.a, 0.0F, 1.0F)};
 }
 
+double largest_of(const VertexDefects& defects, std::size_t vertices, const VolumeParameters& parameters) {
+  std::vector<double> largest(vertices / vertices_per_range + 1, 0.0);
+  parallel_for(vertices, vertices_per_range, [&](std::size_t begin, std::size_t end) {
+    double& top = largest[begin / vertices_per_range];
+    for (std::size_t v = begin; v < end; ++v) top = std::max(top, weighted_defects(defects[v], parameters));
+  });
+  return *std::max_element(largest.begin(), largest.end());
+}
+
 }  // namespace
 
 std::vector<Vec4f> vertex_colors(const Material& material, const Parameters& all) {
@@ -37,25 +46,26 @@ std::vector<Vec4f> vertex_colors(const Material& material, const Parameters& all
   return colors;
 }
 
+double weighted_defects(const DefectValues& values, const VolumeParameters& parameters) {
+  return static_cast<double>(values.positional) * parameters.positional_multiplier +
+         static_cast<double>(values.extra) * parameters.extra_multiplier +
+         static_cast<double>(values.vacancy) * parameters.vacancy_multiplier;
+}
+
+double largest_weighted_defects(const Material& material, const VolumeParameters& parameters) {
+  return largest_of({material.mesh, material.atoms, material.defects}, material.mesh.vertices.size(), parameters);
+}
+
 std::vector<float> vertex_scalars(const Material& material, const VolumeParameters& parameters) {
   if (const VertexField* field = shown_field(material, parameters)) return field_scalars(*field, parameters);
   const VertexDefects defects(material.mesh, material.atoms, material.defects);
-  const auto sum = [&](std::size_t v) {
-    const DefectValues d = defects[v];
-    return static_cast<double>(d.positional) * parameters.positional_multiplier +
-           static_cast<double>(d.extra) * parameters.extra_multiplier +
-           static_cast<double>(d.vacancy) * parameters.vacancy_multiplier;
-  };
   std::vector<float> scalars(material.mesh.vertices.size(), 0.0F);
-  std::vector<double> largest(scalars.size() / vertices_per_range + 1, 0.0);
-  parallel_for(scalars.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
-    double& top = largest[begin / vertices_per_range];
-    for (std::size_t v = begin; v < end; ++v) top = std::max(top, sum(v));
-  });
-  const double top = *std::max_element(largest.begin(), largest.end());
+  const double top = largest_of(defects, scalars.size(), parameters);
   if (!(top > 0.0)) return scalars;
   parallel_for(scalars.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) scalars[v] = static_cast<float>(std::clamp(sum(v) / top, 0.0, 1.0));
+    for (std::size_t v = begin; v < end; ++v) {
+      scalars[v] = static_cast<float>(std::clamp(weighted_defects(defects[v], parameters) / top, 0.0, 1.0));
+    }
   });
   return scalars;
 }

@@ -5,6 +5,7 @@
 
 #include "core/material.h"
 #include "core/parameters.h"
+#include "core/vertex_defects.h"
 #include "render/scene.h"
 
 namespace atomesh {
@@ -35,6 +36,10 @@ std::vector<Vec4f> field_colors(const VertexField& field, const VolumeParameters
 // scene_colors.cpp: one value per mesh vertex.
 std::vector<Vec4f> vertex_colors(const Material& material, const Parameters& parameters);
 std::vector<float> vertex_scalars(const Material& material, const VolumeParameters& parameters);
+// The scalar of an atom before it is normalised: the weighted sum of its defect values (the seed's B.6.3.3).
+double weighted_defects(const DefectValues& values, const VolumeParameters& parameters);
+// The largest among the mesh's vertices, which is what vertex_scalars() divides by; 0 without defects.
+double largest_weighted_defects(const Material& material, const VolumeParameters& parameters);
 
 // scene_balls.cpp
 std::vector<Ball> make_balls(const Material& material, const Parameters& parameters, const Vec3& center);
