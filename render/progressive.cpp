@@ -1,5 +1,7 @@
 #include "render/progressive.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "render/finish.h"
 
@@ -24,11 +26,12 @@ bool draw_step(const Frame& frame, const std::vector<PixelLattice>& lattices, co
   try {
     for (const PixelLattice& lattice : lattices) {
       const std::size_t pixels = LatticeGrid(lattice, window).pixels();
-      Progress part(progress, fraction(reached), fraction(reached + pixels), deadline);
+      Progress part(progress, fraction(reached), std::min(1.0, fraction(reached + pixels)), deadline);
       part.check();
       if (pixels > 0) frame.draw(lattice, rays.image, stats, channels, part);
       reached += pixels;
     }
+    reached = std::min(reached, window.pixels());
   } catch (const CancelledError&) {
     if (progress.cancelled()) throw;
     return false;
@@ -60,7 +63,11 @@ ProgressivePicture render_progressively(const Renderer& renderer, const Scene& s
   rays.image = Image(window.width, window.height);
   const Channels ray_channels = rays.channels(channels);
 
-  const std::vector<SubResolutionStep> steps = sub_resolution_steps(options.sub_window);
+  std::vector<SubResolutionStep> steps = sub_resolution_steps(options.sub_window);
+  if (options.then_whole > 0 && options.then_whole + 1 < static_cast<int>(steps.size())) {
+    steps[options.then_whole] = {steps.back().reached, {PixelLattice{}}};
+    steps.resize(options.then_whole + 1);
+  }
   ProgressivePicture picture;
   picture.levels = static_cast<int>(steps.size());
   std::size_t drawn = 0;

@@ -14,13 +14,16 @@ struct ProgressiveOptions {
   // After so many milliseconds, prepare() included, the sub-resolution that is being drawn is given up. The first is
   // always finished. What `on_picture` takes does not count.
   std::optional<double> time_budget_ms;
+  // After so many sub-resolutions (1 to all of them but one) the whole picture is drawn at once: sooner done than all
+  // of them, for each sets up its cells anew, but with nothing to see on the way. 0: all.
+  int then_whole = 0;
 };
 
 struct ProgressivePicture {
   Image image;  // finished: every pixel is drawn, or has the colour of the drawn one that stands for it
   SubResolution resolution;
   int level = 0;          // 1 is the first sub-resolution
-  int levels = 0;         // 5 with sub-windows of 4 pixels, 7 with 8
+  int levels = 0;         // 5 with sub-windows of 4 pixels, 7 with 8; or then_whole + 1
   double fraction = 0.0;  // of the pixels (with supersampling: of the rays) that are drawn
   double ms = 0.0;        // since the start, without what `on_picture` took
   bool complete() const { return level == levels; }
@@ -31,7 +34,8 @@ struct ProgressivePicture {
 // bit, or the best the time budget allowed. With n×n supersampling the sub-windows are of rays: the first pictures have
 // one ray for many pixels, and each pixel's n×n come in last.
 //
-// Channels are those of the picture returned. One frame serves all sub-resolutions, and no pixel is drawn twice.
+// Channels are those of the picture returned. One frame serves all sub-resolutions, and no pixel is drawn twice (but
+// with then_whole).
 // Throws UsageError for another size of sub-windows and as render() does; CancelledError, which a cancel brings about
 // within a tile.
 ProgressivePicture render_progressively(const Renderer& renderer, const Scene& scene, const Camera& camera,

@@ -1,6 +1,8 @@
 // atomesh: reads the command line, runs one subcommand, turns every error into a message and an exit code.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -8,6 +10,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/session.h"
+#include "app/gui/run_window.h"
 #include "core/error.h"
 
 namespace atomesh::cli {
@@ -85,7 +88,24 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   return fail(message + "\nTry: atomesh " + subcommand.get_name() + " --help", exit_usage);
 }
 
+// The words of the command line when they name nothing but files that are there: what the window shows.
+std::vector<std::string> files_to_show(int argc, char** argv) {
+  std::vector<std::string> files(argv + 1, argv + argc);
+  const auto is_file = [](const std::string& word) { return std::filesystem::is_regular_file(word); };
+  if (!std::all_of(files.begin(), files.end(), is_file)) files.clear();
+  return files;
+}
+
+bool has_display() {
+  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr ||
+         std::getenv("QT_QPA_PLATFORM") != nullptr;
+}
+
 int run(int argc, char** argv) {
+  if (const std::vector<std::string> files = files_to_show(argc, argv);
+      has_display() && (argc == 1 || !files.empty())) {
+    return gui::run_window({files});
+  }
   CLI::App app(
       "atomesh shows what is buried in a sample: atoms -> volume, surface, crystal defects -> pictures.\n"
       "Exit codes: 0 done, 1 wrong use, 2 bad input, 3 could not be done here, 4 comparison failed, "

@@ -123,7 +123,7 @@ TEST(Progressive, EveryPictureShowsTheDirectOnesPixelsAndTheLastAllOfThem) {
           };
           const ProgressivePicture picture =
               render_progressively(find_renderer(name), subject.scene, subject.camera, subject.parameters,
-                                   {sub_window, {}}, last.stats, {&last.thickness, &last.depth, &last.id}, look);
+                                   {sub_window, {}, 0}, last.stats, {&last.thickness, &last.depth, &last.id}, look);
           EXPECT_TRUE(picture.complete());
           EXPECT_EQ(level, picture.levels);
           EXPECT_EQ(picture.fraction, 1.0);
@@ -146,12 +146,33 @@ TEST(Progressive, SupersampledPicturesEndAsTheDirectOnesToo) {
       const Drawn whole = direct(find_renderer("cpu"), subject);
       Drawn last;
       const ProgressivePicture picture =
-          render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, {}},
+          render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, {}, 0},
                                last.stats, {&last.thickness, &last.depth, &last.id});
       EXPECT_EQ(picture.image.pixels, whole.image.pixels) << mode_name(mode) << " " << n;
       EXPECT_EQ(last.thickness, whole.thickness) << mode_name(mode) << " " << n;
       EXPECT_EQ(last.depth, whole.depth) << mode_name(mode) << " " << n;
       EXPECT_EQ(last.id, whole.id) << mode_name(mode) << " " << n;
+    }
+  }
+}
+
+TEST(Progressive, AfterAFewPicturesTheWholeAtOnceIsTheDirectOne) {
+  for (const Mode mode : all_modes) {
+    for (const int coarse : {1, 3, 6, 7}) {
+      Subject subject = shaken_box(mode, Projection::perspective, 45, 37);
+      const Drawn whole = direct(find_renderer("cpu"), subject);
+      Drawn last;
+      int pictures = 0;
+      const ProgressivePicture picture = render_progressively(
+          find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, {}, coarse}, last.stats,
+          {&last.thickness, &last.depth, &last.id}, [&](const ProgressivePicture&) { ++pictures; });
+      EXPECT_EQ(pictures, std::min(coarse + 1, 7)) << mode_name(mode);
+      EXPECT_TRUE(picture.complete());
+      EXPECT_EQ(picture.fraction, 1.0);
+      EXPECT_EQ(picture.image.pixels, whole.image.pixels) << mode_name(mode) << " " << coarse;
+      EXPECT_EQ(last.thickness, whole.thickness) << mode_name(mode) << " " << coarse;
+      EXPECT_EQ(last.depth, whole.depth) << mode_name(mode) << " " << coarse;
+      EXPECT_EQ(last.id, whole.id) << mode_name(mode) << " " << coarse;
     }
   }
 }
@@ -163,7 +184,7 @@ TEST(Progressive, ATimeBudgetLeavesTheBestCompletePicture) {
   RenderStats stats;
   // No time at all: the first picture, and its channel.
   ProgressivePicture picture =
-      render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {4, 0.0}, stats,
+      render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {4, 0.0, 0}, stats,
                            {&thickness, nullptr, nullptr});
   EXPECT_EQ(picture.level, 1);
   EXPECT_FALSE(picture.complete());
@@ -171,8 +192,8 @@ TEST(Progressive, ATimeBudgetLeavesTheBestCompletePicture) {
   EXPECT_EQ(picture.image.at(6, 7), whole.image.at(4, 4));
   EXPECT_EQ(thickness[7 * 50 + 6], whole.thickness[4 * 50 + 4]);
   // More than the clock can count.
-  picture =
-      render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, 1e300}, stats);
+  picture = render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, 1e300, 0},
+                                 stats);
   EXPECT_TRUE(picture.complete());
   EXPECT_EQ(picture.image.pixels, whole.image.pixels);
 }
@@ -232,7 +253,7 @@ TEST(Progressive, ABudgetEndsALongPassAndACancelEndsAllOfIt) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     asked.request_cancel();
   });
-  EXPECT_THROW(render_progressively(Slow(), Scene(), camera, Parameters(), {8, {}}, stats, {}, {}, asked),
+  EXPECT_THROW(render_progressively(Slow(), Scene(), camera, Parameters(), {8, {}, 0}, stats, {}, {}, asked),
                CancelledError);
   other.join();
 }
@@ -246,8 +267,8 @@ TEST(Progressive, ProgressGoesUpOnceAndOtherSubWindowsAreRefused) {
     last = fraction;
   });
   RenderStats stats;
-  render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, {}}, stats, {}, {},
-                       followed);
+  render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {8, {}, 0}, stats, {},
+                       {}, followed);
   EXPECT_EQ(last, 1.0);
   EXPECT_THROW(
       render_progressively(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters, {16, {}}, stats),

@@ -1,0 +1,210 @@
+#include "app/gui/main_window.h"
+
+#include <fmt/format.h>
+
+#include <QCloseEvent>
+#include <QFileInfo>
+#include <QLabel>
+#include <QMessageBox>
+#include <QProgressBar>
+#include <QSettings>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <utility>
+
+#include "app/gui/job.h"
+#include "app/gui/render_worker.h"
+#include "app/gui/viewport.h"
+#include "core/error.h"
+#include "core/parameter_file.h"
+
+namespace atomesh::gui {
+
+MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
+  setObjectName("main_window");
+  resize(1280, 820);
+  setAcceptDrops(true);
+  build_pages();
+  build_docks();
+  build_menus();
+  build_status_line();
+  follow_workspace();
+  update_title();
+  update_actions();
+  QSettings settings;
+  restoreGeometry(settings.value("window/geometry").toByteArray());
+  restoreState(settings.value("window/state").toByteArray());
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::build_pages() {
+  pages_ = new QStackedWidget(this);
+  pages_->setObjectName("pages");
+  viewport_ = new Viewport(workspace_, pages_);
+  pages_->addWidget(viewport_);
+  setCentralWidget(pages_);
+}
+
+void MainWindow::build_docks() {
+  setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
+}
+
+void MainWindow::build_status_line() {
+  hint_ = new QLabel(this);
+  hint_->setObjectName("hint");
+  progress_ = new QProgressBar(this);
+  progress_->setObjectName("progress");
+  progress_->setRange(0, 1000);
+  progress_->setMaximumWidth(fontMetrics().averageCharWidth() * 40);
+  progress_->hide();
+  counts_ = new QLabel(this);
+  counts_->setObjectName("counts");
+  frame_ = new QLabel(this);
+  frame_->setObjectName("frame");
+  statusBar()->addWidget(hint_, 1);
+  statusBar()->addPermanentWidget(progress_);
+  statusBar()->addPermanentWidget(counts_);
+  statusBar()->addPermanentWidget(frame_);
+}
+
+void MainWindow::follow_workspace() {
+  connect(&workspace_, &Workspace::document_changed, this, [this] {
+    update_title();
+    update_actions();
+  });
+  connect(&workspace_, &Workspace::parts_changed, this, &MainWindow::update_actions);
+  connect(&workspace_, &Workspace::parameters_changed, this, &MainWindow::update_actions);
+  connect(&workspace_, &Workspace::job_started, this, &MainWindow::follow);
+  connect(&workspace_, &Workspace::complained, this, &MainWindow::complain);
+  connect(&workspace_, &Workspace::said, this, [this](const QString& line) { hint_->setText(line); });
+  connect(viewport_, &Viewport::frame_shown, this, &MainWindow::update_status);
+}
+
+void MainWindow::follow(Job* job) {
+  progress_->setFormat(job->title() + " %p %");
+  progress_->setValue(0);
+  progress_->show();
+  connect(job, &Job::progressed, this,
+          [this](const QString&, double fraction) { progress_->setValue(static_cast<int>(1000.0 * fraction)); });
+  const auto ended = [this] { progress_->hide(); };
+  connect(job, &Job::done, this, ended);
+  connect(job, &Job::cancelled, this, ended);
+  connect(job, &Job::failed, this, ended);
+  connect(job, &QObject::destroyed, this, ended);
+}
+
+void MainWindow::complain(const QString& message) {
+  auto* box = new QMessageBox(QMessageBox::Warning, "atomesh", message, QMessageBox::Ok, this);
+  box->setObjectName("complaint");
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  box->open();
+}
+
+void MainWindow::update_title() {
+  const auto& document = workspace_.document();
+  setWindowFilePath(document ? QString::fromStdString(document->path) : QString());
+  setWindowTitle(document ? QFileInfo(QString::fromStdString(document->path)).fileName() + " – atomesh"
+                          : QStringLiteral("atomesh"));
+}
+
+void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms) {
+  const auto& document = workspace_.document();
+  if (!document) return;
+  const Material& material = *document->material;
+  QStringList counts;
+  if (material.atoms.size() > 0) counts << tr("%L1 atoms").arg(material.atoms.size());
+  if (!material.mesh.tetrahedra.empty()) counts << tr("%L1 tetrahedra").arg(material.mesh.tetrahedra.size());
+  if (!material.surface.triangles.empty()) counts << tr("%L1 triangles").arg(material.surface.triangles.size());
+  counts_->setText(counts.join(", "));
+  const double ms = picture ? picture->ms : gpu_ms;
+  QString text = ms < 100.0 ? tr("%1 ms").arg(ms, 0, 'f', 1) : tr("%1 ms").arg(ms, 0, 'f', 0);
+  if (picture && !picture->complete()) text += tr(", picture %1 of %2").arg(picture->level).arg(picture->levels);
+  frame_->setText(text);
+}
+
+void MainWindow::open(const QString& path, const std::optional<Parameters>& parameters) {
+  try {
+    switch (file_kind(path.toStdString())) {
+      case FileKind::material:
+      case FileKind::mesh:
+        open_material(path, parameters);
+        break;
+      case FileKind::atoms:
+      case FileKind::picture:
+        complain(tr("%1: cannot be opened yet").arg(path));
+        break;
+    }
+  } catch (const Error& error) {
+    complain(QString::fromUtf8(error.what()));
+  }
+}
+
+void MainWindow::open_material(const QString& path, const std::optional<Parameters>& parameters) {
+  const auto result = std::make_shared<std::optional<Document>>();
+  const MaterialParts parts = parts_needed(parameters ? *parameters : workspace_.parameters());
+  opening_ = std::make_unique<Job>(tr("Opening %1").arg(QFileInfo(path).fileName()),
+                                   [result, parts, file = path.toStdString()](Progress& progress) {
+                                     *result = open_document(file, parts, progress);
+                                   });
+  connect(opening_.get(), &Job::done, this, [this, result, parameters] {
+    opening_.release()->deleteLater();
+    workspace_.show_document(std::move(**result), parameters);
+    pages_->setCurrentWidget(viewport_);
+    viewport_->setFocus();
+  });
+  connect(opening_.get(), &Job::failed, this, [this](const QString& message) {
+    opening_.release()->deleteLater();
+    complain(message);
+  });
+  follow(opening_.get());
+  opening_->start();
+}
+
+void MainWindow::load_parameters(const QString& path) {
+  try {
+    workspace_.change(read_crf(path.toStdString(), workspace_.parameters()),
+                      tr("Load %1").arg(QFileInfo(path).fileName()));
+    workspace_.say(tr("Parameters of %1").arg(path));
+  } catch (const Error& error) {
+    complain(QString::fromUtf8(error.what()));
+  }
+}
+
+void MainWindow::show_loader() {}
+
+void MainWindow::next_mode(int step) {
+  constexpr int count = 5;
+  const int mode = (static_cast<int>(workspace_.parameters().mode) + step + count) % count;
+  change_view(tr("Render mode"), [mode](Parameters& parameters) { parameters.mode = static_cast<Mode>(mode); });
+}
+
+void MainWindow::next_shading() {
+  change_view(tr("Shading mode"), [](Parameters& parameters) {
+    parameters.shading = parameters.shading == Shading::flat ? Shading::smooth : Shading::flat;
+  });
+}
+
+void MainWindow::toggle_full_screen() {
+  setWindowState(windowState() ^ Qt::WindowFullScreen);
+}
+
+void MainWindow::change_view(const QString& name, const std::function<void(Parameters&)>& change) {
+  Parameters parameters = workspace_.parameters();
+  try {
+    change(parameters);
+    workspace_.change(parameters, name);
+  } catch (const Error& error) {
+    complain(QString::fromUtf8(error.what()));
+  }
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  QSettings settings;
+  settings.setValue("window/geometry", saveGeometry());
+  settings.setValue("window/state", saveState());
+  QMainWindow::closeEvent(event);
+}
+
+}  // namespace atomesh::gui

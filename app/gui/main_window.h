@@ -1,0 +1,87 @@
+// The window: the viewport in the middle, docks around it, menus over all of them.
+#pragma once
+
+#include <QMainWindow>
+#include <memory>
+
+#include "app/gui/workspace.h"
+
+class QAction;
+class QActionGroup;
+class QLabel;
+class QMenu;
+class QProgressBar;
+class QStackedWidget;
+class QToolBar;
+
+namespace atomesh::gui {
+
+class Job;
+class Viewport;
+struct WorkerPicture;
+
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  explicit MainWindow(QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  Workspace& workspace() { return workspace_; }
+  Viewport& viewport() { return *viewport_; }
+
+  // A data file of any kind: material and mesh files open, atoms go to preprocessing, a picture that atomesh made
+  // brings back its view. With parameters, those; else those there are.
+  void open(const QString& path, const std::optional<Parameters>& parameters = std::nullopt);
+  void load_parameters(const QString& path);
+
+ public slots:
+  void show_loader();
+  void next_mode(int step = 1);
+  void next_shading();
+  void toggle_full_screen();
+  void reset_orientation();
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  void build_pages();
+  void build_docks();
+  void build_menus();
+  void build_file_menu();
+  void build_edit_menu();
+  void build_view_menu();
+  void build_mode_menu();
+  void build_window_menu();
+  void build_help_menu();
+  void build_status_line();
+  void follow_workspace();
+  void update_title();
+  void update_actions();
+  void update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms);
+  void follow(Job* job);
+  void complain(const QString& message);
+  void change_view(const QString& name, const std::function<void(Parameters&)>& change);
+  void open_material(const QString& path, const std::optional<Parameters>& parameters);
+
+  Workspace workspace_;
+  QStackedWidget* pages_ = nullptr;
+  Viewport* viewport_ = nullptr;
+  std::unique_ptr<Job> opening_;
+
+  QAction* undo_ = nullptr;
+  QAction* redo_ = nullptr;
+  QActionGroup* modes_ = nullptr;
+  QActionGroup* shadings_ = nullptr;
+  QActionGroup* projections_ = nullptr;
+  QAction* full_screen_ = nullptr;
+  std::vector<QAction*> needing_document_;
+  QMenu* docks_menu_ = nullptr;
+  QLabel* counts_ = nullptr;
+  QLabel* frame_ = nullptr;
+  QLabel* hint_ = nullptr;
+  QProgressBar* progress_ = nullptr;
+};
+
+}  // namespace atomesh::gui

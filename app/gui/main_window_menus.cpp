@@ -1,0 +1,184 @@
+#include <QAction>
+#include <QActionGroup>
+#include <QApplication>
+#include <QFileDialog>
+#include <QMenu>
+#include <QMenuBar>
+#include <array>
+
+#include "app/gui/main_window.h"
+#include "app/gui/navigation.h"
+#include "app/gui/viewport.h"
+#include "core/camera.h"
+
+namespace atomesh::gui {
+
+void MainWindow::build_menus() {
+  build_file_menu();
+  build_edit_menu();
+  build_mode_menu();
+  build_view_menu();
+  build_window_menu();
+  build_help_menu();
+}
+
+void MainWindow::build_file_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&File"));
+  QAction* open = menu->addAction(tr("&Open…"));
+  open->setObjectName("action_open");
+  open->setShortcut(QKeySequence::Open);
+  connect(open, &QAction::triggered, this, [this] {
+    const QString path = QFileDialog::getOpenFileName(
+        this, tr("Open"), {},
+        tr("All that can be opened (*.crb *.crt *.dat *.xyz *.extxyz *.lmp *.data *.dump *.lammpstrj *.vtu *.vtk *.bin "
+           "*.node *.ele *.png);;Materials (*.crb *.crt);;All files (*)"));
+    if (!path.isEmpty()) this->open(path);
+  });
+  menu->addSeparator();
+  QAction* quit = menu->addAction(tr("E&xit"));
+  quit->setObjectName("action_quit");
+  quit->setShortcuts({QKeySequence(Qt::Key_Q), QKeySequence::Quit});
+  connect(quit, &QAction::triggered, this, &QWidget::close);
+}
+
+void MainWindow::build_edit_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Edit"));
+  undo_ = menu->addAction(tr("&Undo"), this, [this] { workspace_.undo(); });
+  undo_->setObjectName("action_undo");
+  undo_->setShortcut(QKeySequence::Undo);
+  redo_ = menu->addAction(tr("&Redo"), this, [this] { workspace_.redo(); });
+  redo_->setObjectName("action_redo");
+  redo_->setShortcuts({QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
+}
+
+void MainWindow::build_mode_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Mode"));
+  modes_ = new QActionGroup(this);
+  const std::array<QString, 5> names{tr("Volume and surface"), tr("Volume"), tr("Surface"), tr("X-ray"),
+                                     tr("Atom balls")};
+  for (int mode = 0; mode < 5; ++mode) {
+    QAction* action = menu->addAction(names[static_cast<std::size_t>(mode)]);
+    action->setObjectName("mode_" + QString::fromUtf8(mode_name(static_cast<Mode>(mode)).data()));
+    action->setCheckable(true);
+    action->setData(mode);
+    action->setShortcut(QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + mode)));
+    modes_->addAction(action);
+  }
+  connect(modes_, &QActionGroup::triggered, this, [this](const QAction* action) {
+    change_view(tr("Render mode"), [action](Parameters& p) { p.mode = static_cast<Mode>(action->data().toInt()); });
+  });
+  menu->addSeparator();
+  QAction* next = menu->addAction(tr("Next mode"), this, [this] { next_mode(); });
+  next->setObjectName("action_next_mode");
+  next->setShortcut(Qt::Key_D);
+  QAction* previous = menu->addAction(tr("Previous mode"), this, [this] { next_mode(-1); });
+  previous->setObjectName("action_previous_mode");
+  previous->setShortcut(Qt::SHIFT | Qt::Key_D);
+  menu->addSeparator();
+  shadings_ = new QActionGroup(this);
+  for (const Shading shading : {Shading::flat, Shading::smooth}) {
+    QAction* action = menu->addAction(shading == Shading::flat ? tr("Flat shading") : tr("Smooth shading"));
+    action->setCheckable(true);
+    action->setData(static_cast<int>(shading));
+    shadings_->addAction(action);
+  }
+  connect(shadings_, &QActionGroup::triggered, this, [this](const QAction* action) {
+    change_view(tr("Shading mode"),
+                [action](Parameters& p) { p.shading = static_cast<Shading>(action->data().toInt()); });
+  });
+  QAction* shading = menu->addAction(tr("Other shading"), this, &MainWindow::next_shading);
+  shading->setObjectName("action_next_shading");
+  shading->setShortcut(Qt::Key_S);
+}
+
+void MainWindow::build_view_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&View"));
+  QAction* reset = menu->addAction(tr("&Reset orientation"), this, &MainWindow::reset_orientation);
+  reset->setObjectName("action_reset");
+  reset->setShortcut(Qt::Key_R);
+  struct View {
+    const char* name;
+    QString text;
+    Qt::Key key;
+  };
+  const std::array<View, 7> views{{{"front", tr("Front"), Qt::Key_1},
+                                   {"back", tr("Back"), Qt::Key_2},
+                                   {"right", tr("Right"), Qt::Key_3},
+                                   {"left", tr("Left"), Qt::Key_4},
+                                   {"top", tr("Top"), Qt::Key_7},
+                                   {"bottom", tr("Bottom"), Qt::Key_8},
+                                   {"iso", tr("Isometric"), Qt::Key_9}}};
+  menu->addSeparator();
+  for (const View& view : views) {
+    QAction* action = menu->addAction(view.text, this, [this, name = view.name, text = view.text] {
+      change_view(text, [name](Parameters& parameters) {
+        set_view(parameters, name);
+        parameters.roll = 0.0;
+      });
+    });
+    action->setObjectName(QString("view_") + view.name);
+    action->setShortcut(view.key);
+  }
+  menu->addSeparator();
+  projections_ = new QActionGroup(this);
+  for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+    QAction* action = menu->addAction(projection == Projection::perspective ? tr("Perspective") : tr("Parallel"));
+    action->setCheckable(true);
+    action->setData(static_cast<int>(projection));
+    projections_->addAction(action);
+  }
+  connect(projections_, &QActionGroup::triggered, this, [this](const QAction* action) {
+    change_view(tr("Projection"),
+                [action](Parameters& p) { p.projection = static_cast<Projection>(action->data().toInt()); });
+  });
+  QAction* other = menu->addAction(tr("Other projection"), this, [this] {
+    change_view(tr("Projection"), [](Parameters& p) {
+      p.projection = p.projection == Projection::parallel ? Projection::perspective : Projection::parallel;
+    });
+  });
+  other->setObjectName("action_next_projection");
+  other->setShortcut(Qt::Key_5);
+}
+
+void MainWindow::build_window_menu() {
+  docks_menu_ = menuBar()->addMenu(tr("&Window"));
+  full_screen_ = docks_menu_->addAction(tr("&Full screen"), this, &MainWindow::toggle_full_screen);
+  full_screen_->setObjectName("action_full_screen");
+  full_screen_->setShortcut(Qt::Key_F);
+  full_screen_->setCheckable(true);
+  docks_menu_->addSeparator();
+}
+
+void MainWindow::build_help_menu() {
+  menuBar()->addMenu(tr("&Help"));
+}
+
+void MainWindow::reset_orientation() {
+  workspace_.reset_rotation_center();
+  change_view(tr("Reset orientation"), [](Parameters& parameters) {
+    const Parameters defaults;
+    parameters.azimuth = defaults.azimuth;
+    parameters.elevation = defaults.elevation;
+    parameters.roll = defaults.roll;
+    parameters.zoom = defaults.zoom;
+    parameters.pan = defaults.pan;
+  });
+}
+
+void MainWindow::update_actions() {
+  const ParameterHistory& history = workspace_.history();
+  undo_->setEnabled(history.can_undo());
+  redo_->setEnabled(history.can_redo());
+  undo_->setText(history.can_undo() ? tr("&Undo %1").arg(QString::fromStdString(history.undo_name())) : tr("&Undo"));
+  redo_->setText(history.can_redo() ? tr("&Redo %1").arg(QString::fromStdString(history.redo_name())) : tr("&Redo"));
+  const Parameters& parameters = workspace_.parameters();
+  const auto check = [](const QActionGroup* group, int value) {
+    for (QAction* action : group->actions()) action->setChecked(action->data().toInt() == value);
+  };
+  check(modes_, static_cast<int>(parameters.mode));
+  check(shadings_, static_cast<int>(parameters.shading));
+  check(projections_, static_cast<int>(parameters.projection));
+  for (QAction* action : needing_document_) action->setEnabled(workspace_.document().has_value());
+}
+
+}  // namespace atomesh::gui

@@ -1,0 +1,37 @@
+#include "app/gui/run_window.h"
+
+#include <QApplication>
+#include <QSurfaceFormat>
+
+#include "app/gui/main_window.h"
+
+namespace atomesh::gui {
+
+int run_window(const WindowArguments& arguments) {
+  QSurfaceFormat format;
+  format.setVersion(3, 2);
+  format.setProfile(QSurfaceFormat::CoreProfile);
+  format.setAlphaBufferSize(8);
+  format.setDepthBufferSize(24);
+  QSurfaceFormat::setDefaultFormat(format);
+  int count = 1;
+  char name[] = "atomesh";
+  char* words[] = {name, nullptr};
+  QApplication application(count, words);
+  QApplication::setApplicationName("atomesh");
+  QApplication::setOrganizationName("atomesh");
+  QApplication::setDesktopFileName("atomesh");
+  MainWindow window;
+  window.show();
+  for (const std::string& file : arguments.files) {
+    const QString path = QString::fromStdString(file);
+    if (path.endsWith(".crf", Qt::CaseInsensitive)) {
+      window.load_parameters(path);
+    } else {
+      window.open(path);
+    }
+  }
+  return QApplication::exec();
+}
+
+}  // namespace atomesh::gui

@@ -1,0 +1,17 @@
+// The program as a window.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace atomesh::gui {
+
+struct WindowArguments {
+  std::vector<std::string> files;  // at most one data file, at most one .crf
+};
+
+// Opens the window and returns its exit code when it is closed. Throws UnavailableError, naming the headless
+// subcommands, where there is no display or no OpenGL 3.2.
+int run_window(const WindowArguments& arguments);
+
+}  // namespace atomesh::gui
