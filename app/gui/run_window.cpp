@@ -7,13 +7,17 @@
 
 namespace atomesh::gui {
 
-int run_window(const WindowArguments& arguments) {
+void set_surface_format() {
   QSurfaceFormat format;
   format.setVersion(3, 2);
   format.setProfile(QSurfaceFormat::CoreProfile);
   format.setAlphaBufferSize(8);
   format.setDepthBufferSize(24);
   QSurfaceFormat::setDefaultFormat(format);
+}
+
+int run_window(const WindowArguments& arguments) {
+  set_surface_format();
   int count = 1;
   char name[] = "atomesh";
   char* words[] = {name, nullptr};

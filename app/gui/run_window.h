@@ -14,4 +14,7 @@ struct WindowArguments {
 // subcommands, where there is no display or no OpenGL 3.2.
 int run_window(const WindowArguments& arguments);
 
+// The OpenGL that windows ask for; before the application is made.
+void set_surface_format();
+
 }  // namespace atomesh::gui

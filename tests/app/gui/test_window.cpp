@@ -1,0 +1,109 @@
+// The whole window as a user drives it: files, modes, keys, undo; its pictures beside those of the command line.
+#include <gtest/gtest.h>
+
+#include <QAction>
+#include <QLabel>
+#include <QMessageBox>
+#include <QSignalSpy>
+#include <QTest>
+
+#include "app/gui/main_window.h"
+#include "app/gui/viewport.h"
+#include "core/parameter_file.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+#include "tests/app/gui/window_test.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+using namespace atomesh;
+using namespace atomesh::gui;
+using test::child;
+using test::wait_for;
+
+constexpr std::array modes{Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
+
+class Window : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::has_opengl()) GTEST_SKIP() << "no display with OpenGL";
+    window = std::make_unique<MainWindow>();
+    window->resize(900, 640);
+    test::show(*window);
+  }
+
+  void open_salt() {
+    window->open(QString::fromStdString(test::cracked_salt_crb(folder.path().string())));
+    ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); }));
+  }
+  // What the command line draws of the same.
+  Image picture_of_cli() {
+    const Workspace& workspace = window->workspace();
+    const Material material = read_material(workspace.document()->path);
+    const Scene scene = make_scene(material, workspace.shown());
+    const Camera camera = make_camera(workspace.shown(), scene.bounds, workspace.width(), workspace.height());
+    RenderStats stats;
+    return render(find_renderer("cpu"), scene, camera, workspace.shown(), stats);
+  }
+  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    window->activateWindow();
+    ASSERT_TRUE(wait_for([&] { return window->isActiveWindow(); }));
+    QTest::keyClick(&window->viewport(), key, modifiers);
+  }
+
+  test::TemporaryFolder folder;
+  std::unique_ptr<MainWindow> window;
+};
+
+TEST_F(Window, EveryModeShowsTheCommandLinesPicture) {
+  open_salt();
+  for (const Mode mode : modes) {
+    window->workspace().set("mode", std::string(mode_name(mode)));
+    ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); })) << mode_name(mode);
+    EXPECT_EQ(window->viewport().worker_picture()->parameters.mode, mode);
+    const QImage expected = to_qimage(picture_of_cli());
+    EXPECT_EQ(window->viewport().worker_picture()->image, expected) << mode_name(mode);
+    test::keep_screenshot(window->grab().toImage(), "window-" + std::string(mode_name(mode)));
+  }
+}
+
+TEST_F(Window, KeysOfTheManual) {
+  open_salt();
+  Workspace& workspace = window->workspace();
+  for (int mode = 1; mode <= 5; ++mode) {
+    press(Qt::Key_D);
+    EXPECT_EQ(workspace.parameters().mode, modes[static_cast<std::size_t>(mode % 5)]);
+  }
+  const Shading before = workspace.parameters().shading;
+  press(Qt::Key_S);
+  EXPECT_NE(workspace.parameters().shading, before);
+  press(Qt::Key_S);
+  EXPECT_EQ(workspace.parameters().shading, before);
+  workspace.set("view.azimuth", "77");
+  workspace.set("view.zoom", "3");
+  press(Qt::Key_R);
+  EXPECT_EQ(workspace.parameters().azimuth, Parameters().azimuth);
+  EXPECT_EQ(workspace.parameters().zoom, 1.0);
+  press(Qt::Key_F);
+  EXPECT_TRUE(wait_for([&] { return window->isFullScreen(); }));
+  press(Qt::Key_F);
+  EXPECT_TRUE(wait_for([&] { return !window->isFullScreen(); }));
+  press(Qt::Key_Z, Qt::ControlModifier);  // the orientation comes back
+  EXPECT_EQ(workspace.parameters().azimuth, 77.0);
+  press(Qt::Key_Q);
+  EXPECT_TRUE(wait_for([&] { return !window->isVisible(); }));
+}
+
+TEST_F(Window, WhatCannotBeOpenedIsSaidAndWhatIsOpenStays) {
+  open_salt();
+  const std::string before = window->workspace().document()->path;
+  window->open(QString::fromStdString(folder.file("broken.crb", "ATOMESH?")));
+  const auto complaint = [&] { return window->findChild<QMessageBox*>("complaint"); };
+  ASSERT_TRUE(wait_for([&] { return complaint() != nullptr; }));
+  EXPECT_TRUE(complaint()->text().contains("broken.crb")) << complaint()->text().toStdString();
+  complaint()->accept();
+  EXPECT_EQ(window->workspace().document()->path, before);
+}
+
+}  // namespace
