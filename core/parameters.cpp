@@ -54,36 +54,6 @@ bool has_auto(const ParameterRow& row) {
          std::holds_alternative<std::optional<double>*>(find_entry(row.key).entry->slot(defaults));
 }
 
-std::string expected(const ParameterRow& row) {
-  switch (row.type) {
-    case ParameterType::boolean:
-      return "true or false";
-    case ParameterType::integer:
-      return "a whole number " + range_text(row);
-    case ParameterType::real:
-      return (has_auto(row) ? "auto or a number " : "a number ") + range_text(row);
-    case ParameterType::choice: {
-      std::string text;
-      for (std::size_t i = 0; i < row.choices.size(); ++i) {
-        if (i > 0) text += i + 1 == row.choices.size() ? " or " : ", ";
-        text += row.choices[i];
-      }
-      return text;
-    }
-    case ParameterType::text:
-      return "a name, without control characters, or auto";
-    case ParameterType::rgb:
-      return "a color, #rrggbb or r,g,b with each from 0 to 1";
-    case ParameterType::rgba:
-      return "a color, #rrggbb, #rrggbbaa or r,g,b,a with each from 0 to 1";
-    case ParameterType::vector:
-      return "x,y,z, each a number " + range_text(row);
-    case ParameterType::color_map:
-      break;
-  }
-  return "a preset's name or 2 to 32 entries scalar:color";
-}
-
 bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
@@ -252,6 +222,36 @@ std::vector<std::string> parameter_keys(const std::vector<std::string>& species)
   return keys;
 }
 
+std::string expected_value(const ParameterRow& row) {
+  switch (row.type) {
+    case ParameterType::boolean:
+      return "true or false";
+    case ParameterType::integer:
+      return "a whole number " + range_text(row);
+    case ParameterType::real:
+      return (has_auto(row) ? "auto or a number " : "a number ") + range_text(row);
+    case ParameterType::choice: {
+      std::string text;
+      for (std::size_t i = 0; i < row.choices.size(); ++i) {
+        if (i > 0) text += i + 1 == row.choices.size() ? " or " : ", ";
+        text += row.choices[i];
+      }
+      return text;
+    }
+    case ParameterType::text:
+      return "a name, without control characters, or auto";
+    case ParameterType::rgb:
+      return "a color, #rrggbb or r,g,b with each from 0 to 1";
+    case ParameterType::rgba:
+      return "a color, #rrggbb, #rrggbbaa or r,g,b,a with each from 0 to 1";
+    case ParameterType::vector:
+      return "x,y,z, each a number " + range_text(row);
+    case ParameterType::color_map:
+      break;
+  }
+  return "a preset's name or 2 to 32 entries scalar:color";
+}
+
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view text) {
   const Found found = find_entry(key);
   const ParameterRow& row = found.entry->row;
@@ -264,7 +264,7 @@ void set_parameter(Parameters& parameters, std::string_view key, std::string_vie
   } catch (const UsageError& error) {
     throw UsageError(std::string(key) + ": " + error.what());
   }
-  if (!done) throw UsageError(std::string(key) + " = \"" + std::string(text) + "\": expected " + expected(row));
+  if (!done) throw UsageError(std::string(key) + " = \"" + std::string(text) + "\": expected " + expected_value(row));
 }
 
 std::string get_parameter(const Parameters& parameters, std::string_view key) {

@@ -168,6 +168,8 @@ const ParameterRow& parameter_row(std::string_view key);
 // colour or radius, a field or a range goes back to its own. Throws UsageError with key, text and what was expected
 // (range, choices); `parameters` is then unchanged.
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view text);
+// What set_parameter takes for a row, as its messages say it: "a number from 0 to 1", "flat or smooth".
+std::string expected_value(const ParameterRow& row);
 // The value as text that set_parameter reads back to exactly the same value.
 std::string get_parameter(const Parameters& parameters, std::string_view key);
 
