@@ -12,19 +12,27 @@
 namespace atomesh::gui {
 
 // Draws the same pictures as render() does in modes surface and atoms: camera, lights, cut planes, background, colours,
-// opacities; a test compares them. All calls with the context current.
+// opacities, supersampling; a test compares them. On the card lie 36 bytes a ball, or 24 a vertex and 24 a triangle; a
+// view that changes sends nothing but a few numbers. All calls with the context current, which has OpenGL 3.2 (core) or
+// later and, VTK's condition, came through GLX or WGL (not EGL).
 class GpuScene {
  public:
   GpuScene();
+  // release() before, unless the context is gone already.
   ~GpuScene();
   GpuScene(const GpuScene&) = delete;
   GpuScene& operator=(const GpuScene&) = delete;
 
-  // What is drawn from now on: mode surface or atoms. Uploaded at the next draw().
+  // What is drawn from now on: mode surface or atoms (UsageError for another); none draws the background. Uploaded at
+  // the next draw(), from the scene as it is then.
   void set_scene(std::shared_ptr<const Scene> scene);
-  // Into the framebuffer object that is bound, camera.width × camera.height device pixels, background included.
+  // Into the framebuffer object that is bound, camera.width × camera.height device pixels, background included. Colours
+  // are premultiplied by their coverage, as compositors take them (the same where the background is opaque). Of n × n
+  // rays a pixel (Parameters::supersampling) as many are drawn as the card's textures hold. Throws UnavailableError
+  // where this OpenGL will not do, and nothing is drawn.
   void draw(const Camera& camera, const Parameters& parameters);
-  // Before the context goes: gives back what lies on the card.
+  // Before the context goes: gives back what lies on the card. The scene stays; the next draw(), also in another
+  // context, uploads it again.
   void release();
 
  private:
@@ -35,7 +43,7 @@ class GpuScene {
 struct GpuInfo {
   std::string renderer;     // GL_RENDERER
   std::string version;      // GL_VERSION
-  bool sufficient = false;  // OpenGL 3.2 or later
+  bool sufficient = false;  // OpenGL 3.2 or later, not OpenGL ES
   bool software = false;    // llvmpipe, softpipe, swrast, SwiftShader, …
 };
 // Of the current context; `proc` gives a function's address by name (QOpenGLContext::getProcAddress).

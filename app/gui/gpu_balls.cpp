@@ -1,0 +1,206 @@
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
+#include <vtkShaderProgram.h>
+#include <vtk_glew.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "app/gui/gpu_buffers.h"
+#include "app/gui/gpu_drawing.h"
+#include "app/gui/gpu_shaders.h"
+#include "render/cpu/atom_balls.h"
+#include "render/shared/materials.h"
+
+namespace atomesh::gui {
+
+namespace {
+
+// Balls lie on the card as they lie in the scene; the shaders count on it.
+constexpr std::size_t ball_floats = 9;
+static_assert(sizeof(Ball) == ball_floats * sizeof(float));
+static_assert(offsetof(Ball, center) == 0 && offsetof(Ball, radius) == 12 && offsetof(Ball, color) == 16);
+
+// Each pixel's nearest ball is found first and shaded then, once, however many balls lie behind one another. Of balls
+// that are not opaque layer is peeled off behind layer, until no pixel sees further.
+class GpuBalls final : public GpuDrawing {
+ public:
+  explicit GpuBalls(std::shared_ptr<const Scene> scene)
+      : scene_(std::move(scene)), opaque_(std::all_of(scene_->balls.begin(), scene_->balls.end(), [](const Ball& ball) {
+          return ball.color.a >= 1.0F;
+        })) {}
+
+  void draw(vtkOpenGLRenderWindow& window, const GpuView& view, const Parameters&) override {
+    if (scene_->balls.empty()) return;
+    vtkOpenGLState& state = *window.GetState();
+    layers_[0].resize(window, view.width, view.height);
+    if (whole_picture_ == 0) glGenVertexArrays(1, &whole_picture_);
+    state.PushFramebufferBindings();
+    state.vtkglDepthFunc(GL_LESS);
+    state.vtkglDisable(GL_CULL_FACE);
+    if (opaque_) {
+      draw_layer(window, view, 0);
+      state.PopFramebufferBindings();
+      shade_layer(window, view, 0);
+    } else {
+      peel(window, view);
+      state.PopFramebufferBindings();
+      lay_light(window);
+    }
+    glBindVertexArray(0);
+    bind_texture(state, 0, GL_TEXTURE_2D, 0);
+    state.vtkglEnable(GL_DEPTH_TEST);
+    state.vtkglDepthFunc(GL_LEQUAL);
+    state.vtkglEnable(GL_BLEND);
+    state.vtkglBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  }
+
+  void release() override {
+    for (Part& part : parts_) {
+      delete_vertex_array(part.instances);
+      delete_texture(part.texture);
+      delete_buffer(part.balls);
+    }
+    parts_.clear();
+    for (GpuTarget& layer : layers_) layer.release();
+    light_.release();
+    delete_vertex_array(whole_picture_);
+    if (seen_ != 0) glDeleteQueries(1, &seen_);
+    seen_ = 0;
+    for (GpuProgram* program : {&layer_program_, &shading_program_, &copy_program_}) program->program = nullptr;
+  }
+
+ private:
+  // As many balls as a texture of them can hold.
+  struct Part {
+    unsigned balls = 0;
+    unsigned texture = 0;
+    unsigned instances = 0;
+    int first = 0;
+    int count = 0;
+  };
+
+  static void bind_texture(vtkOpenGLState& state, unsigned unit, unsigned kind, unsigned texture) {
+    state.vtkglActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(kind, texture);
+  }
+
+  void upload(vtkShaderProgram& program) {
+    const std::size_t most = largest_buffer_texture() / ball_floats;
+    for (std::size_t first = 0; first < scene_->balls.size(); first += most) {
+      const std::size_t count = std::min(most, scene_->balls.size() - first);
+      Part part;
+      part.balls = make_buffer(&scene_->balls[first], count * sizeof(Ball));
+      part.texture = make_buffer_texture(part.balls);
+      part.first = static_cast<int>(first);
+      part.count = static_cast<int>(count);
+      glGenVertexArrays(1, &part.instances);
+      glBindVertexArray(part.instances);
+      set_attribute(program, "center", part.balls, 3, sizeof(Ball), offsetof(Ball, center), 1);
+      set_attribute(program, "radius", part.balls, 1, sizeof(Ball), offsetof(Ball, radius), 1);
+      parts_.push_back(part);
+    }
+  }
+
+  // The nearest balls, or those next behind the layer before.
+  void draw_layer(vtkOpenGLRenderWindow& window, const GpuView& view, int layer) {
+    vtkOpenGLState& state = *window.GetState();
+    const GpuTarget& before = layers_[static_cast<std::size_t>((layer + 1) % 2)];
+    vtkShaderProgram& program = layer_program_.use(window);
+    if (parts_.empty()) upload(program);
+    layers_[static_cast<std::size_t>(layer % 2)].begin(window);
+    tell(view, program);
+    program.SetUniformi("layer", layer);
+    program.SetUniformf("opaque", static_cast<float>(1.0 - faintest));
+    program.SetUniformi("layer_before", 0);
+    program.SetUniformi("depth_before", 1);
+    program.SetUniformi("light", 2);
+    bind_texture(state, 2, GL_TEXTURE_2D, layer > 0 ? light_.texture() : 0);
+    bind_texture(state, 1, GL_TEXTURE_2D, layer > 0 ? before.depths() : 0);
+    bind_texture(state, 0, GL_TEXTURE_2D, layer > 0 ? before.texture() : 0);
+    state.vtkglEnable(GL_DEPTH_TEST);
+    state.vtkglDepthMask(GL_TRUE);
+    state.vtkglDisable(GL_BLEND);
+    for (const Part& part : parts_) {
+      program.SetUniformi("first", part.first);
+      glBindVertexArray(part.instances);
+      glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, part.count);
+    }
+    for (const unsigned unit : {2U, 1U, 0U}) bind_texture(state, unit, GL_TEXTURE_2D, 0);
+  }
+
+  // Into the framebuffer that is bound, which says how it is blended.
+  void shade_layer(vtkOpenGLRenderWindow& window, const GpuView& view, int layer) {
+    vtkOpenGLState& state = *window.GetState();
+    vtkShaderProgram& program = shading_program_.use(window);
+    tell(view, program);
+    program.SetUniformi("hits", 0);
+    program.SetUniformi("balls", 1);
+    program.SetUniformf("ambient_share", optics::ambient_share);
+    program.SetUniformf("diffuse_share", optics::diffuse_share);
+    state.vtkglDisable(GL_DEPTH_TEST);
+    bind_texture(state, 0, GL_TEXTURE_2D, layers_[static_cast<std::size_t>(layer % 2)].texture());
+    glBindVertexArray(whole_picture_);
+    for (const Part& part : parts_) {
+      bind_texture(state, 1, GL_TEXTURE_BUFFER, part.texture);
+      program.SetUniformi("first", part.first);
+      program.SetUniformi("count", part.count);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    bind_texture(state, 1, GL_TEXTURE_BUFFER, 0);
+    bind_texture(state, 0, GL_TEXTURE_2D, 0);
+  }
+
+  // All layers that are seen, front to back, into light_.
+  void peel(vtkOpenGLRenderWindow& window, const GpuView& view) {
+    vtkOpenGLState& state = *window.GetState();
+    layers_[1].resize(window, view.width, view.height);
+    light_.resize(window, view.width, view.height);
+    if (seen_ == 0) glGenQueries(1, &seen_);
+    light_.begin(window);
+    for (int layer = 0;; ++layer) {
+      glBeginQuery(GL_SAMPLES_PASSED, seen_);
+      draw_layer(window, view, layer);
+      glEndQuery(GL_SAMPLES_PASSED);
+      GLuint pixels = 0;
+      glGetQueryObjectuiv(seen_, GL_QUERY_RESULT, &pixels);
+      if (pixels == 0) return;
+      light_.bind(window);
+      state.vtkglEnable(GL_BLEND);
+      state.vtkglBlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_ONE, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+      shade_layer(window, view, layer);
+    }
+  }
+
+  // Over the background.
+  void lay_light(vtkOpenGLRenderWindow& window) {
+    vtkOpenGLState& state = *window.GetState();
+    vtkShaderProgram& program = copy_program_.use(window);
+    program.SetUniformi("light", 0);
+    bind_texture(state, 0, GL_TEXTURE_2D, light_.texture());
+    state.vtkglDisable(GL_DEPTH_TEST);
+    state.vtkglEnable(GL_BLEND);
+    state.vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glBindVertexArray(whole_picture_);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  bool opaque_;
+  std::vector<Part> parts_;
+  GpuProgram layer_program_{"atom balls", ball_vertex_shader, ball_layer_shader};
+  GpuProgram shading_program_{"lit atom balls", whole_picture_vertex_shader, ball_shading_shader};
+  GpuProgram copy_program_{"pictures", whole_picture_vertex_shader, copy_shader};
+  std::array<GpuTarget, 2> layers_{GpuTarget(GpuTarget::Kind::balls), GpuTarget(GpuTarget::Kind::balls)};
+  GpuTarget light_{GpuTarget::Kind::light};
+  unsigned whole_picture_ = 0;  // a vertex array without attributes
+  unsigned seen_ = 0;           // a query
+};
+
+}  // namespace
+
+std::unique_ptr<GpuDrawing> make_gpu_balls(std::shared_ptr<const Scene> scene) {
+  return std::make_unique<GpuBalls>(std::move(scene));
+}
+
+}  // namespace atomesh::gui

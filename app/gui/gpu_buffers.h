@@ -1,0 +1,49 @@
+// OpenGL's buffers, textures and targets as GpuScene uses them. 0 is none; deleting none is nothing. All calls with the
+// context current and VTK's function pointers loaded.
+#pragma once
+
+#include <cstddef>
+
+class vtkOpenGLRenderWindow;
+class vtkShaderProgram;
+
+namespace atomesh::gui {
+
+// Throws UnavailableError when the card has no room.
+unsigned make_buffer(const void* bytes, std::size_t size);
+void delete_buffer(unsigned& buffer);
+// Of the vertex array that is bound: `parts` floats at `offset` of every `stride` bytes of the buffer, the next one for
+// each vertex, or for each instance with divisor 1. What the program does not use is left out.
+void set_attribute(vtkShaderProgram& program, const char* name, unsigned buffer, int parts, std::size_t stride,
+                   std::size_t offset, unsigned divisor);
+void delete_vertex_array(unsigned& array);
+
+// The floats of a buffer for texelFetch().
+unsigned make_buffer_texture(unsigned buffer);
+std::size_t largest_buffer_texture();  // floats
+void delete_texture(unsigned& texture);
+
+// A texture to draw into: balls and their depths (GL_R32UI, GL_DEPTH_COMPONENT32F), or light (GL_RGBA32F).
+class GpuTarget {
+ public:
+  enum class Kind { balls, light };
+  explicit GpuTarget(Kind kind) : kind_(kind) {}
+  // Of this size, made anew where it is not. Throws UnavailableError when the card has no room.
+  void resize(vtkOpenGLRenderWindow& window, int width, int height);
+  // To be drawn into from now on, whole; begin() clears it to no ball, farthest, or no light.
+  void bind(vtkOpenGLRenderWindow& window) const;
+  void begin(vtkOpenGLRenderWindow& window) const;
+  unsigned texture() const { return texture_; }
+  unsigned depths() const { return depths_; }
+  void release();
+
+ private:
+  Kind kind_;
+  int width_ = 0;
+  int height_ = 0;
+  unsigned framebuffer_ = 0;
+  unsigned texture_ = 0;
+  unsigned depths_ = 0;
+};
+
+}  // namespace atomesh::gui
