@@ -20,8 +20,40 @@
 
 namespace atomesh::gui {
 
+namespace {
+
+ViewOptions stored_view_options() {
+  const QSettings settings;
+  ViewOptions options;
+  options.legend = settings.value("view/legend", options.legend).toBool();
+  options.scale_bar = settings.value("view/scale_bar", options.scale_bar).toBool();
+  options.tripod = settings.value("view/tripod", options.tripod).toBool();
+  options.cut_handles = settings.value("view/cut_handles", options.cut_handles).toBool();
+  options.upright = settings.value("view/upright", options.upright).toBool();
+  const QString drawing = settings.value("view/drawing").toString();
+  if (drawing == "gpu") options.drawing = ViewOptions::Drawing::gpu;
+  if (drawing == "cpu") options.drawing = ViewOptions::Drawing::cpu;
+  return options;
+}
+
+void store(const ViewOptions& options) {
+  QSettings settings;
+  settings.setValue("view/legend", options.legend);
+  settings.setValue("view/scale_bar", options.scale_bar);
+  settings.setValue("view/tripod", options.tripod);
+  settings.setValue("view/cut_handles", options.cut_handles);
+  settings.setValue("view/upright", options.upright);
+  using Drawing = ViewOptions::Drawing;
+  settings.setValue("view/drawing", options.drawing == Drawing::gpu   ? "gpu"
+                                    : options.drawing == Drawing::cpu ? "cpu"
+                                                                      : "automatic");
+}
+
+}  // namespace
+
 MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
   setObjectName("main_window");
+  workspace_.set_view_options(stored_view_options());
   resize(1280, 820);
   setAcceptDrops(true);
   build_pages();
@@ -204,6 +236,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   QSettings settings;
   settings.setValue("window/geometry", saveGeometry());
   settings.setValue("window/state", saveState());
+  store(workspace_.view_options());
   QMainWindow::closeEvent(event);
 }
 

@@ -16,6 +16,7 @@ class QToolBar;
 
 namespace atomesh::gui {
 
+class CrystalViewDialog;
 class Job;
 class Viewport;
 struct WorkerPicture;
@@ -53,6 +54,7 @@ class MainWindow : public QMainWindow {
   void build_edit_menu();
   void build_view_menu();
   void build_mode_menu();
+  void build_view_options(QMenu& menu);
   void build_window_menu();
   void build_help_menu();
   void build_status_line();
@@ -68,6 +70,7 @@ class MainWindow : public QMainWindow {
   Workspace workspace_;
   QStackedWidget* pages_ = nullptr;
   Viewport* viewport_ = nullptr;
+  CrystalViewDialog* crystal_view_ = nullptr;
   std::unique_ptr<Job> opening_;
 
   QAction* undo_ = nullptr;

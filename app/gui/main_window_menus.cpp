@@ -6,6 +6,7 @@
 #include <QMenuBar>
 #include <array>
 
+#include "app/gui/crystal_view_dialog.h"
 #include "app/gui/main_window.h"
 #include "app/gui/navigation.h"
 #include "app/gui/viewport.h"
@@ -119,6 +120,14 @@ void MainWindow::build_view_menu() {
     action->setObjectName(QString("view_") + view.name);
     action->setShortcut(view.key);
   }
+  QAction* crystal = menu->addAction(tr("Along the &crystal…"), this, [this] {
+    if (crystal_view_ == nullptr) crystal_view_ = new CrystalViewDialog(workspace_, this);
+    crystal_view_->show();
+    crystal_view_->raise();
+    crystal_view_->activateWindow();
+  });
+  crystal->setObjectName("action_crystal_view");
+  crystal->setShortcut(Qt::Key_C);
   menu->addSeparator();
   projections_ = new QActionGroup(this);
   for (const Projection projection : {Projection::perspective, Projection::parallel}) {
@@ -138,6 +147,52 @@ void MainWindow::build_view_menu() {
   });
   other->setObjectName("action_next_projection");
   other->setShortcut(Qt::Key_5);
+  menu->addSeparator();
+  build_view_options(*menu);
+}
+
+void MainWindow::build_view_options(QMenu& menu) {
+  struct Option {
+    const char* name;
+    QString text;
+    bool ViewOptions::*value;
+  };
+  const std::array<Option, 5> options{{{"legend", tr("&Legend"), &ViewOptions::legend},
+                                       {"scale_bar", tr("S&cale bar"), &ViewOptions::scale_bar},
+                                       {"tripod", tr("&Tripod of axes"), &ViewOptions::tripod},
+                                       {"cut_handles", tr("&Handles of cut planes"), &ViewOptions::cut_handles},
+                                       {"upright", tr("&Keep z upright when turning"), &ViewOptions::upright}}};
+  for (const Option& option : options) {
+    QAction* action = menu.addAction(option.text);
+    action->setObjectName(QString("option_") + option.name);
+    action->setCheckable(true);
+    action->setChecked(workspace_.view_options().*option.value);
+    connect(action, &QAction::toggled, this, [this, value = option.value](bool on) {
+      ViewOptions changed = workspace_.view_options();
+      changed.*value = on;
+      workspace_.set_view_options(changed);
+    });
+    connect(&workspace_, &Workspace::view_options_changed, action,
+            [this, action, value = option.value] { action->setChecked(workspace_.view_options().*value); });
+  }
+  QMenu* drawing = menu.addMenu(tr("Draw surface and atom balls with"));
+  auto* group = new QActionGroup(this);
+  const std::array<std::pair<ViewOptions::Drawing, QString>, 3> who{
+      {{ViewOptions::Drawing::automatic, tr("Graphics card where there is one")},
+       {ViewOptions::Drawing::gpu, tr("OpenGL")},
+       {ViewOptions::Drawing::cpu, tr("Processor")}}};
+  for (const auto& [value, text] : who) {
+    QAction* action = drawing->addAction(text);
+    action->setObjectName(QString("drawing_%1").arg(static_cast<int>(value)));
+    action->setCheckable(true);
+    action->setChecked(workspace_.view_options().drawing == value);
+    group->addAction(action);
+    connect(action, &QAction::triggered, this, [this, chosen = value] {
+      ViewOptions changed = workspace_.view_options();
+      changed.drawing = chosen;
+      workspace_.set_view_options(changed);
+    });
+  }
 }
 
 void MainWindow::build_window_menu() {

@@ -32,12 +32,15 @@ std::uint8_t to_byte(float channel) {
 }  // namespace
 
 QImage to_qimage(const Image& image) {
-  QImage result(image.width, image.height, QImage::Format_RGBA8888);
+  const bool opaque =
+      std::all_of(image.pixels.begin(), image.pixels.end(), [](const Vec4f& pixel) { return pixel.a >= 1.0F; });
+  // Of an opaque picture what painting it takes no conversion of.
+  QImage result(image.width, image.height, opaque ? QImage::Format_RGB32 : QImage::Format_ARGB32);
   for (int row = 0; row < image.height; ++row) {
-    std::uint8_t* byte = result.scanLine(row);
+    auto* const pixels = reinterpret_cast<QRgb*>(result.scanLine(row));
     for (int column = 0; column < image.width; ++column) {
       const Vec4f& pixel = image.at(column, row);
-      for (int channel = 0; channel < 4; ++channel) *byte++ = to_byte(pixel[channel]);
+      pixels[column] = qRgba(to_byte(pixel.r), to_byte(pixel.g), to_byte(pixel.b), to_byte(pixel.a));
     }
   }
   return result;

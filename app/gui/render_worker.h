@@ -45,7 +45,7 @@ struct WorkerPicture {
   bool complete() const { return level == levels; }
 };
 
-// Bytes as a QImage of format RGBA8888, channels rounded to the nearest of 256 as write_png() does.
+// Of format RGB32, or ARGB32 where a pixel is not opaque; channels rounded to the nearest of 256 as write_png() does.
 QImage to_qimage(const Image& image);
 
 // A new order ends the one that is drawn, once that has given its first picture: while the view turns there is always

@@ -6,10 +6,11 @@
 
 namespace atomesh::gui {
 
-Viewport::Viewport(Workspace& workspace, QWidget* parent) : QOpenGLWidget(parent), workspace_(workspace) {
+Viewport::Viewport(Workspace& workspace, QWidget* parent) : QWidget(parent), workspace_(workspace) {
   setObjectName("viewport");
   setFocusPolicy(Qt::StrongFocus);
   setMinimumSize(160, 120);
+  setAttribute(Qt::WA_OpaquePaintEvent);
   setAccessibleName(tr("View of the sample"));
   connect(&worker_, &RenderWorker::picture, this, &Viewport::take, Qt::QueuedConnection);
   connect(&worker_, &RenderWorker::failed, &workspace_, &Workspace::complain, Qt::QueuedConnection);
@@ -21,29 +22,28 @@ Viewport::~Viewport() {
   worker_.stop();
 }
 
-QSize Viewport::device_size() const {
+void Viewport::follow_size() {
   const double ratio = devicePixelRatioF();
-  return {std::max(1, static_cast<int>(std::lround(width() * ratio))),
-          std::max(1, static_cast<int>(std::lround(height() * ratio)))};
+  workspace_.set_view_size(std::max(1, static_cast<int>(std::lround(width() * ratio))),
+                           std::max(1, static_cast<int>(std::lround(height() * ratio))));
 }
 
-void Viewport::initializeGL() {
-  initialized_ = true;
+void Viewport::resizeEvent(QResizeEvent*) {
+  follow_size();
 }
 
-void Viewport::resizeGL(int, int) {
-  const QSize size = device_size();
-  workspace_.set_view_size(size.width(), size.height());
+void Viewport::showEvent(QShowEvent*) {
+  follow_size();
+  order();
 }
 
 void Viewport::forget_pictures() {
   picture_.reset();
-  scene_.reset();
   update();
 }
 
 void Viewport::order() {
-  if (!workspace_.document() || !initialized_) {
+  if (!workspace_.document() || !isVisible()) {
     worker_.stop();
     return;
   }
@@ -71,20 +71,24 @@ bool Viewport::drawn_by_gpu() const {
   return false;
 }
 
-void Viewport::paintGL() {
+void Viewport::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   const Vec4f& background = workspace_.shown().background;
-  painter.fillRect(rect(), QColor::fromRgbF(background.r, background.g, background.b));
-  if (picture_) painter.drawImage(rect(), picture_->image);
+  const bool covers = picture_ && picture_->image.format() == QImage::Format_RGB32;
+  if (!covers) painter.fillRect(rect(), QColor::fromRgbF(background.r, background.g, background.b));
+  if (picture_) {
+    if (picture_->image.size() == size() * devicePixelRatioF()) {
+      painter.scale(1.0 / devicePixelRatioF(), 1.0 / devicePixelRatioF());
+      painter.drawImage(0, 0, picture_->image);
+    } else {
+      painter.drawImage(rect(), picture_->image);  // until the one of the new size is there
+    }
+  }
   painter.end();
   if (settled() && !was_settled_) {
     was_settled_ = true;
     emit became_settled();
   }
-}
-
-QImage Viewport::screenshot() {
-  return picture_ ? grabFramebuffer() : QImage();
 }
 
 }  // namespace atomesh::gui

@@ -2,23 +2,25 @@
 #pragma once
 
 #include <QImage>
-#include <QOpenGLWidget>
+#include <QWidget>
 #include <memory>
 
 #include "app/gui/render_worker.h"
 #include "app/gui/workspace.h"
 
+class QPainter;
+
 namespace atomesh::gui {
 
-class Viewport : public QOpenGLWidget {
+// A plain widget, so that where OpenGL runs in software nothing waits for it: pictures of the processor are painted as
+// they are. The graphics card's view (GpuView) lies over it while the card draws, and is made when it first does.
+class Viewport : public QWidget {
   Q_OBJECT
 
  public:
   explicit Viewport(Workspace& workspace, QWidget* parent = nullptr);
   ~Viewport() override;
 
-  // What is shown now: device pixels, with what lies over it. Null before the first picture.
-  QImage screenshot();
   // The last picture of the CPU renderers, nothing over it; null where the graphics card draws.
   const std::shared_ptr<const WorkerPicture>& worker_picture() const { return picture_; }
   // Whether what is shown is complete and of the parameters as they are.
@@ -31,25 +33,22 @@ class Viewport : public QOpenGLWidget {
   // which took so long.
   void frame_shown(std::shared_ptr<const atomesh::gui::WorkerPicture> picture, double gpu_ms);
   void became_settled();
-  void opengl_missing(const QString& why);
 
  protected:
-  void initializeGL() override;
-  void resizeGL(int width, int height) override;
-  void paintGL() override;
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
 
  private:
   void order();
   void take(std::shared_ptr<const WorkerPicture> picture);
   void forget_pictures();
-  QSize device_size() const;
+  void follow_size();
 
   Workspace& workspace_;
   RenderWorker worker_;
-  bool initialized_ = false;
   std::uint64_t number_ = 0;                      // of the last order
   std::shared_ptr<const WorkerPicture> picture_;  // the last of the CPU renderers
-  std::shared_ptr<const WorkerPicture> scene_;    // the last scene for the card
   bool was_settled_ = false;
 };
 
