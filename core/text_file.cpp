@@ -118,6 +118,22 @@ bool parse_integer(std::string_view field, std::int64_t& value) {
   return true;
 }
 
+namespace {
+
+// A file in the folder of `path` that has no name yet, so that it goes with the process however that ends; nullptr
+// where the file system has none.
+std::FILE* open_without_name(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (file < 0) return nullptr;
+  // What cannot get a name later is of no use.
+  std::FILE* stream = ::access("/proc/self/fd", X_OK) == 0 ? ::fdopen(file, "wb") : nullptr;
+  if (stream == nullptr) ::close(file);
+  return stream;
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -134,7 +150,9 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
     }
     static std::atomic<unsigned> counter{0};
     temporary_ = path_ + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".part";
-    file_ = std::fopen(temporary_.c_str(), "wbx");
+    file_ = open_without_name(path_);
+    named_ = file_ == nullptr;
+    if (named_) file_ = std::fopen(temporary_.c_str(), "wbx");
   }
   if (file_ == nullptr) {
     const int error = errno;
@@ -145,7 +163,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
 
 AtomicFile::~AtomicFile() {
   if (file_ != nullptr) std::fclose(file_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (named_) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
@@ -155,7 +173,11 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 void AtomicFile::commit() {
-  const bool flushed = std::ferror(file_) == 0 && std::fflush(file_) == 0;
+  bool flushed = std::ferror(file_) == 0 && std::fflush(file_) == 0;
+  if (flushed && !temporary_.empty() && !named_) {
+    const std::string open_file = "/proc/self/fd/" + std::to_string(::fileno(file_));
+    flushed = named_ = ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
   const int flush_error = errno;
   const bool closed = std::fclose(file_) == 0;
   const int close_error = errno;
@@ -167,7 +189,7 @@ void AtomicFile::commit() {
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     throw Error(path_ + ": cannot be written: " + reason(errno));
   }
-  temporary_.clear();
+  named_ = false;
 }
 
 }  // namespace atomesh

@@ -53,8 +53,9 @@ bool parse_real(std::string_view field, double& value);
 bool parse_integer(std::string_view field, std::int64_t& value);
 
 // Writes a file beside `path` and renames it on commit(); a destructor without commit removes what was written, so a
-// cancelled or failed write leaves neither a new half file nor harms the old one. Throws Error with the system's
-// reason.
+// cancelled or failed write leaves neither a new half file nor harms the old one. Where the file system can (Linux's
+// own do), what is written has no name before the commit: not even a process that is killed leaves anything. Throws
+// Error with the system's reason.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
@@ -68,7 +69,8 @@ class AtomicFile {
 
  private:
   std::string path_;
-  std::string temporary_;
+  std::string temporary_;  // what it is called before it is renamed; "" for a device
+  bool named_ = false;     // and is there under that name
   std::FILE* file_ = nullptr;
 };
 

@@ -25,18 +25,20 @@ namespace {
 // long it took and how much memory was held.
 class StageClock {
  public:
-  StageClock(std::vector<StageTime>& times, std::vector<std::uint64_t>& memory, Progress& progress)
-      : times_(times), memory_(memory), progress_(progress) {}
+  StageClock(const Material& material, std::vector<StageTime>& times, PipelineReport& report,
+             const PipelineOptions& options, Progress& progress)
+      : material_(material), times_(times), report_(report), options_(options), progress_(progress) {}
 
   template <class Work>
   auto operator()(const char* name, Work&& work) {
+    tell_last();
     progress_.stage(name);
     reset_peak_memory();
     const auto start = std::chrono::steady_clock::now();
     const auto stop = [&] {
       const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
       times_.push_back({name, elapsed.count()});
-      memory_.push_back(recent_peak_memory());
+      report_.stage_memory.push_back(recent_peak_memory());
       release_free_memory();
     };
     try {
@@ -53,10 +55,20 @@ class StageClock {
     }
   }
 
+  // What a stage returned is in the material only now that the next one is about to begin.
+  void tell_last() {
+    if (told_ == times_.size() || !options_.after_stage) return;
+    told_ = times_.size();
+    options_.after_stage(times_.back(), material_, report_);
+  }
+
  private:
+  const Material& material_;
   std::vector<StageTime>& times_;
-  std::vector<std::uint64_t>& memory_;
+  PipelineReport& report_;
+  const PipelineOptions& options_;
   Progress& progress_;
+  std::size_t told_ = 0;
 };
 
 bool reduces(const ReduceOptions& options) {
@@ -170,7 +182,7 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
                     Progress& progress) {
   Material material;
   report = {};
-  StageClock stage(material.provenance.stages, report.stage_memory, progress);
+  StageClock stage(material, material.provenance.stages, report, options, progress);
   const MaterialParts& wanted = options.wanted;
 
   Crystal crystal;
@@ -259,6 +271,7 @@ Material preprocess(const std::string& path, const PipelineOptions& options, Pip
     });
   }
 
+  stage.tell_last();
   describe(path, options, report, material);
   return material;
 }

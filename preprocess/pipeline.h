@@ -20,6 +20,8 @@
 
 namespace atomesh {
 
+struct PipelineReport;
+
 struct PipelineOptions {
   ReadOptions read;
   ReduceOptions reduce;
@@ -38,6 +40,9 @@ struct PipelineOptions {
   SimplifyOptions simplify_options;
   // Called with the whole mesh, its surface and defects before they are simplified, by who wants to compare.
   std::function<void(const Material&)> before_simplify;
+  // Called between stages (and after the last), on the thread that does the work: what of the material and the report
+  // is made so far, by who wants to show it.
+  std::function<void(const StageTime& finished, const Material&, const PipelineReport&)> after_stage;
   // What the caller will use. Stages that only make something else are left out: atoms alone need no mesh, a surface
   // needs no defects.
   MaterialParts wanted;

@@ -26,7 +26,7 @@ int run_preprocess(const PreprocessArguments& arguments, Session& session) {
   }
   check_output(arguments.output, {".crb", ".crt"});
   const PreprocessedFile file =
-      preprocess_file({arguments.inputs.front(), arguments.output}, arguments.settings, session);
+      preprocess_file({arguments.inputs.front(), arguments.output}, arguments.settings, session.progress());
   show_notes(file.report, session);
   session.print_text(stage_table(file));
   session.print_text(certificate_text(file));

@@ -97,7 +97,7 @@ void make(BatchRow& row, const PreprocessSettings& settings, bool force, Session
     fs::create_directories(folder, error);
     if (error) throw Error(folder.string() + ": this folder cannot be made: " + error.message());
   }
-  const PreprocessedFile file = preprocess_file(row.job, settings, session);
+  const PreprocessedFile file = preprocess_file(row.job, settings, session.progress());
   show_notes(file.report, session);
   row.status = "done";
   row.provenance = file.material.provenance;

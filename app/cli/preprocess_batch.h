@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/cli/batch_plan.h"
+#include "app/cli/session.h"
 
 namespace atomesh::cli {
 

@@ -1,11 +1,12 @@
 #include "app/cli/preprocess_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <new>
 
-#include "app/cli/load_material.h"
 #include "app/cli/machine.h"
 #include "app/cli/read_mesh.h"
 #include "app/cli/species_count.h"
@@ -27,73 +28,6 @@ double milliseconds_since(Clock::time_point start) {
 
 double megabytes(std::uint64_t bytes) {
   return static_cast<double>(bytes) * 1e-6;
-}
-
-// What the stage made, in a few words.
-std::string outcome(const std::string& stage, const PreprocessedFile& file) {
-  const Material& material = file.material;
-  const PipelineReport& report = file.report;
-  if (stage == "read_atoms") {
-    std::string text = fmt::format("{} atoms, {}", grouped(report.read.atoms), report.read.format);
-    if (report.read.frames > 1) text += fmt::format(", frame {} of {}", report.read.frame, report.read.frames);
-    return fmt::format("{}; {} skipped, {} duplicates", text, grouped(report.read.skipped),
-                       grouped(report.read.duplicates));
-  }
-  if (stage == "find_unit_cell") {
-    if (!material.unit_cell) return "none";
-    const std::size_t basis = material.unit_cell->basis.size();
-    if (report.unit_cell_source != "found") return fmt::format("from the file, {} basis atoms", basis);
-    const std::size_t grains = report.find_cell.grains.size();
-    return fmt::format("found, {} basis atoms{}; explains {:.4g} % of the atoms, {:.3g} Å rms off their sites", basis,
-                       grains > 1 ? fmt::format(", {} grains", grains) : "", 100.0 * report.find_cell.explained,
-                       report.find_cell.displacement);
-  }
-  if (stage == "reduce_atoms") {
-    return fmt::format("{} atoms left; {} masked, {} thinned out", grouped(material.atoms.size()),
-                       grouped(report.reduce.masked), grouped(report.reduce.dropped));
-  }
-  if (stage == "tetrahedralize") {
-    const std::size_t now =
-        report.simplify.strategy.empty() ? material.mesh.tetrahedra.size() : report.simplify.tetrahedra_before;
-    const std::size_t stamped = report.tetrahedralize.pattern.stamped;
-    return fmt::format("{} tetrahedra, {}{}", grouped(now + report.carve.removed), report.tetrahedralize.mesher,
-                       report.tetrahedralize.mesher == "pattern" ? fmt::format(", {} stamped", grouped(stamped)) : "");
-  }
-  if (stage == "carve") {
-    return fmt::format("{} removed, radius {:.4g} Å", grouped(report.carve.removed), report.carve.radius);
-  }
-  if (stage == "extract_surface") {
-    return fmt::format("{} triangles, {}", grouped(material.surface.triangles.size()),
-                       report.surface_closed ? "closed" : "NOT closed");
-  }
-  if (stage == "simplify") {
-    const SimplifyReport& simplify = report.simplify;
-    return fmt::format("{} tetrahedra left of {}; {} of {} free vertices removed by {}",
-                       grouped(simplify.tetrahedra_after), grouped(simplify.tetrahedra_before),
-                       grouped(simplify.removed_vertices), grouped(simplify.free_vertices), simplify.strategy);
-  }
-  if (stage == "certify") {
-    return fmt::format("{} pictures of either mesh", file.pictures);
-  }
-  if (stage == "measure") {
-    return fmt::format("volume {:.6g} Å³, area {:.6g} Å²", report.volume, report.surface_area);
-  }
-  if (stage == "quantify_defects") {
-    const DefectReport& defects = report.defects;
-    return fmt::format(
-        "neighbours: displaced of {} atoms, missing of {}, too many of {}; sites: {} vacancies, {} extra atoms, {} of "
-        "them substitutions{}",
-        grouped(defects.positional_atoms), grouped(defects.vacancy_atoms), grouped(defects.extra_atoms),
-        grouped(material.defects.vacancies.size()), grouped(material.defects.extras.size()),
-        grouped(material.defects.substitutions.size()),
-        defects.noise > 0.0 ? fmt::format("; thermal amplitude {:.3g} Å", defects.noise) : "");
-  }
-  if (stage == "assign_scalar") {
-    const auto& values = material.defects.positional;
-    return fmt::format("shown from 0 to {:.6g}",
-                       values.empty() ? 0.0F : *std::max_element(values.begin(), values.end()));
-  }
-  return "";
 }
 
 Json grains_json(const std::vector<Grain>& grains) {
@@ -146,6 +80,70 @@ Json unit_cell_json(const Material& material, const PipelineReport& report) {
 
 }  // namespace
 
+std::string stage_outcome(const std::string& stage, const Material& material, const PipelineReport& report) {
+  if (stage == "read_atoms") {
+    std::string text = fmt::format("{} atoms, {}", grouped(report.read.atoms), report.read.format);
+    if (report.read.frames > 1) text += fmt::format(", frame {} of {}", report.read.frame, report.read.frames);
+    return fmt::format("{}; {} skipped, {} duplicates", text, grouped(report.read.skipped),
+                       grouped(report.read.duplicates));
+  }
+  if (stage == "find_unit_cell") {
+    if (!material.unit_cell) return "none";
+    const std::size_t basis = material.unit_cell->basis.size();
+    if (report.unit_cell_source != "found") return fmt::format("from the file, {} basis atoms", basis);
+    const std::size_t grains = report.find_cell.grains.size();
+    return fmt::format("found, {} basis atoms{}; explains {:.4g} % of the atoms, {:.3g} Å rms off their sites", basis,
+                       grains > 1 ? fmt::format(", {} grains", grains) : "", 100.0 * report.find_cell.explained,
+                       report.find_cell.displacement);
+  }
+  if (stage == "reduce_atoms") {
+    return fmt::format("{} atoms left; {} masked, {} thinned out", grouped(material.atoms.size()),
+                       grouped(report.reduce.masked), grouped(report.reduce.dropped));
+  }
+  if (stage == "tetrahedralize") {
+    const std::size_t now =
+        report.simplify.strategy.empty() ? material.mesh.tetrahedra.size() : report.simplify.tetrahedra_before;
+    const std::size_t stamped = report.tetrahedralize.pattern.stamped;
+    return fmt::format("{} tetrahedra, {}{}", grouped(now + report.carve.removed), report.tetrahedralize.mesher,
+                       report.tetrahedralize.mesher == "pattern" ? fmt::format(", {} stamped", grouped(stamped)) : "");
+  }
+  if (stage == "carve") {
+    return fmt::format("{} removed, radius {:.4g} Å", grouped(report.carve.removed), report.carve.radius);
+  }
+  if (stage == "extract_surface") {
+    const bool measured = report.surface_area > 0.0;
+    return fmt::format("{} triangles{}", grouped(material.surface.triangles.size()),
+                       !measured               ? ""
+                       : report.surface_closed ? ", closed"
+                                               : ", NOT closed");
+  }
+  if (stage == "simplify") {
+    const SimplifyReport& simplify = report.simplify;
+    return fmt::format("{} tetrahedra left of {}; {} of {} free vertices removed by {}",
+                       grouped(simplify.tetrahedra_after), grouped(simplify.tetrahedra_before),
+                       grouped(simplify.removed_vertices), grouped(simplify.free_vertices), simplify.strategy);
+  }
+  if (stage == "measure") {
+    return fmt::format("volume {:.6g} Å³, area {:.6g} Å²", report.volume, report.surface_area);
+  }
+  if (stage == "quantify_defects") {
+    const DefectReport& defects = report.defects;
+    return fmt::format(
+        "neighbours: displaced of {} atoms, missing of {}, too many of {}; sites: {} vacancies, {} extra atoms, {} of "
+        "them substitutions{}",
+        grouped(defects.positional_atoms), grouped(defects.vacancy_atoms), grouped(defects.extra_atoms),
+        grouped(material.defects.vacancies.size()), grouped(material.defects.extras.size()),
+        grouped(material.defects.substitutions.size()),
+        defects.noise > 0.0 ? fmt::format("; thermal amplitude {:.3g} Å", defects.noise) : "");
+  }
+  if (stage == "assign_scalar") {
+    const auto& values = material.defects.positional;
+    return fmt::format("shown from 0 to {:.6g}",
+                       values.empty() ? 0.0F : *std::max_element(values.begin(), values.end()));
+  }
+  return "";
+}
+
 std::vector<std::pair<std::string, std::string>> recorded_options(const PreprocessSettings& settings,
                                                                   const std::string& format) {
   auto options = provenance_options(settings.options, format);
@@ -153,24 +151,29 @@ std::vector<std::pair<std::string, std::string>> recorded_options(const Preproce
   return options;
 }
 
-PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSettings& settings, Session& session) {
-  if (is_material_file(job.input)) {
-    throw UsageError(job.input + " is preprocessed already; atomesh convert changes its format");
+PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSettings& settings, Progress& progress) {
+  PreprocessedFile file = preprocess_input(job.input, settings, progress);
+  write_output(file, job.output, settings.compress, progress);
+  return file;
+}
+
+PreprocessedFile preprocess_input(const std::string& input, const PreprocessSettings& settings, Progress& progress) {
+  if (is_material_file(input)) {
+    throw UsageError(input + " is preprocessed already; atomesh convert changes its format");
   }
-  if (is_mesh_file(job.input)) {
-    throw UsageError(job.input +
-                     " is a mesh, which needs no preprocessing; render it as it is, or use atomesh convert " +
-                     job.input + " OUT.crb");
+  if (is_mesh_file(input)) {
+    throw UsageError(input + " is a mesh, which needs no preprocessing; render it as it is, or use atomesh convert " +
+                     input + " OUT.crb");
   }
   const auto start = Clock::now();
   PreprocessedFile file;
-  file.job = job;
+  file.job.input = input;
   SimplifyPictures pictures;
   StageTime certify{"certify", 0.0};
   std::uint64_t certify_memory = 0;
   const auto draw = [&](const char* stage, auto&& work) {
     const auto draw_start = Clock::now();
-    session.progress().stage(stage);
+    progress.stage(stage);
     reset_peak_memory();
     work();
     certify.ms += milliseconds_since(draw_start);
@@ -178,12 +181,11 @@ PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSetti
   };
   PipelineOptions options = settings.options;
   options.before_simplify = [&](const Material& whole) {
-    draw("draw the whole mesh", [&] { pictures.draw(whole, session.progress()); });
+    draw("draw the whole mesh", [&] { pictures.draw(whole, progress); });
   };
-  file.material = preprocess(job.input, options, file.report, session.progress());
+  file.material = preprocess(input, options, file.report, progress);
   if (pictures.drawn()) {
-    draw("draw the simplified mesh",
-         [&] { file.picture_difference = pictures.compare(file.material, session.progress()); });
+    draw("draw the simplified mesh", [&] { file.picture_difference = pictures.compare(file.material, progress); });
   }
   Provenance& provenance = file.material.provenance;
   provenance.options = recorded_options(settings, file.report.read.format);
@@ -195,20 +197,25 @@ PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSetti
     file.stages.push_back(certify);
     file.stage_memory.push_back(certify_memory);
   }
+  file.total_ms = milliseconds_since(start);
+  return file;
+}
 
+void write_output(PreprocessedFile& file, const std::string& output, bool compress, Progress& progress) {
   const auto write_start = Clock::now();
-  session.progress().stage("write_material");
+  progress.stage("write_material");
   reset_peak_memory();
   try {
-    write_material(job.output, file.material, {.compress = settings.compress}, session.progress());
+    write_material(output, file.material, {.compress = compress}, progress);
   } catch (const std::bad_alloc&) {
     throw UnavailableError("write_material: the memory ran out; " + memory_advice());
   }
-  file.stages.push_back({"write_material", milliseconds_since(write_start)});
+  const double ms = milliseconds_since(write_start);
+  file.stages.push_back({"write_material", ms});
   file.stage_memory.push_back(recent_peak_memory());
-  file.output_bytes = std::filesystem::file_size(job.output);
-  file.total_ms = milliseconds_since(start);
-  return file;
+  file.job.output = output;
+  file.output_bytes = std::filesystem::file_size(output);
+  file.total_ms += ms;
 }
 
 std::string certificate_text(const PreprocessedFile& file) {
@@ -237,10 +244,11 @@ std::string stage_table(const PreprocessedFile& file) {
   TextTable table({"stage", "ms", "peak MB", "result"});
   for (std::size_t i = 0; i < file.stages.size(); ++i) {
     const StageTime& stage = file.stages[i];
-    const bool last = stage.name == "write_material";
-    table.row(
-        {stage.name, milliseconds(stage.ms), fmt::format("{:.0f}", megabytes(file.stage_memory[i])),
-         last ? fmt::format("{}, {}", file.job.output, byte_size(file.output_bytes)) : outcome(stage.name, file)});
+    const std::string result = stage.name == "write_material"
+                                   ? fmt::format("{}, {}", file.job.output, byte_size(file.output_bytes))
+                               : stage.name == "certify" ? fmt::format("{} pictures of either mesh", file.pictures)
+                                                         : stage_outcome(stage.name, file.material, file.report);
+    table.row({stage.name, milliseconds(stage.ms), fmt::format("{:.0f}", megabytes(file.stage_memory[i])), result});
   }
   table.row({"total", milliseconds(file.total_ms), fmt::format("{:.0f}", peak_memory_mb()), ""});
   return table.text();

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "app/cli/json.h"
-#include "app/cli/session.h"
 #include "app/cli/simplify_pictures.h"
 #include "core/material.h"
+#include "core/progress.h"
 #include "preprocess/pipeline.h"
 
 namespace atomesh::cli {
@@ -23,7 +23,7 @@ struct PreprocessSettings {
 };
 
 struct PreprocessedFile {
-  PreprocessJob job;
+  PreprocessJob job;  // the output is the last one written; "" before
   Material material;
   PipelineReport report;
   std::vector<StageTime> stages;            // with the certificate's pictures and the writing
@@ -40,7 +40,15 @@ std::vector<std::pair<std::string, std::string>> recorded_options(const Preproce
                                                                   const std::string& format);
 
 // Reads, makes and writes. Throws what these throw, and UsageError for an input that is preprocessed already.
-PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSettings& settings, Session& session);
+PreprocessedFile preprocess_file(const PreprocessJob& job, const PreprocessSettings& settings, Progress& progress);
+// The two halves of it: all but the writing; and a further stage, which may follow once for each file that is wanted.
+PreprocessedFile preprocess_input(const std::string& input, const PreprocessSettings& settings, Progress& progress);
+void write_output(PreprocessedFile& file, const std::string& output, bool compress, Progress& progress);
+
+// What a stage of preprocess() made, in a few words: "25,725 atoms, dat; 0 skipped, 0 duplicates". Of material and
+// report only what that stage and those before made is looked at (but for the surface, of which `measure` says whether
+// it is closed).
+std::string stage_outcome(const std::string& stage, const Material& material, const PipelineReport& report);
 
 // A row a stage: its time, the most memory held, what it made.
 std::string stage_table(const PreprocessedFile& file);

@@ -1,6 +1,8 @@
 // Lines, fields and numbers of text; files that appear whole or not at all.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <limits>
@@ -115,6 +117,30 @@ TEST(AtomicFile, WithoutCommitTheOldFileStays) {
   EXPECT_EQ(read_bytes(folder.file("a")), "old");
   const std::filesystem::directory_iterator entries(folder.path());
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
+}
+
+// However the process ends: it has no name to be left behind under.
+TEST(AtomicFile, HasNoNameBeforeTheCommitWhereTheFileSystemCan) {
+  const TemporaryFolder folder;
+  const auto entries = [&] {
+    const std::filesystem::directory_iterator list(folder.path());
+    return std::distance(begin(list), end(list));
+  };
+  const int probe = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (probe < 0) GTEST_SKIP() << "this file system has no files without a name";
+  ::close(probe);
+  AtomicFile file(folder.file("a"));
+  file.write("whole");
+  std::fflush(file.stream());
+  EXPECT_EQ(entries(), 0);
+  file.commit();
+  EXPECT_EQ(entries(), 1);
+  EXPECT_EQ(read_bytes(folder.file("a")), "whole");
+  struct stat now {};
+  ASSERT_EQ(::stat(folder.file("a").c_str(), &now), 0);
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  EXPECT_EQ(now.st_mode & 0777U, 0666U & ~mask);  // as any other new file
 }
 
 TEST(AtomicFile, FollowsLinksAndWritesThroughDevices) {

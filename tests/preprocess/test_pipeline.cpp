@@ -61,6 +61,28 @@ TEST_F(Pipeline, MakesEverythingByDefault) {
   EXPECT_TRUE(report_.notes.empty());
 }
 
+// Who shows how it goes hears of each stage once, in order, and finds there what it made.
+TEST_F(Pipeline, TellsOfEveryStageWhenItsResultIsInPlace) {
+  std::vector<std::string> told;
+  std::size_t atoms_after_reading = 0, triangles_after_surface = 0, vacancies_after_defects = 0;
+  std::size_t tetrahedra_before_carving = 0;
+  PipelineOptions options;
+  options.after_stage = [&](const StageTime& finished, const Material& material, const PipelineReport& report) {
+    told.push_back(finished.name);
+    EXPECT_EQ(report.stage_memory.size(), told.size());
+    if (finished.name == "read_atoms") atoms_after_reading = material.atoms.size();
+    if (finished.name == "tetrahedralize") tetrahedra_before_carving = material.mesh.tetrahedra.size();
+    if (finished.name == "extract_surface") triangles_after_surface = material.surface.triangles.size();
+    if (finished.name == "quantify_defects") vacancies_after_defects = material.defects.vacancies.size();
+  };
+  const Material material = run(options);
+  EXPECT_EQ(told, stages(material));
+  EXPECT_EQ(atoms_after_reading, material.atoms.size());
+  EXPECT_EQ(tetrahedra_before_carving, material.mesh.tetrahedra.size() + report_.carve.removed);
+  EXPECT_EQ(triangles_after_surface, material.surface.triangles.size());
+  EXPECT_EQ(vacancies_after_defects, 1U);
+}
+
 TEST_F(Pipeline, LeavesOutWhatNobodyWants) {
   PipelineOptions options;
   options.wanted = {.atoms = true, .tetrahedra = false, .surface = false, .defects = false};
