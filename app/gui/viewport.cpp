@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/gui/card_view.h"
+
 namespace atomesh::gui {
 
 Viewport::Viewport(Workspace& workspace, QWidget* parent) : QWidget(parent), workspace_(workspace) {
@@ -16,6 +18,10 @@ Viewport::Viewport(Workspace& workspace, QWidget* parent) : QWidget(parent), wor
   connect(&worker_, &RenderWorker::failed, &workspace_, &Workspace::complain, Qt::QueuedConnection);
   connect(&workspace_, &Workspace::shown_changed, this, &Viewport::order);
   connect(&workspace_, &Workspace::document_changed, this, &Viewport::forget_pictures);
+  connect(&workspace_, &Workspace::view_options_changed, this, [this] {
+    card_failed_ = false;
+    order();
+  });
 }
 
 Viewport::~Viewport() {
@@ -29,6 +35,7 @@ void Viewport::follow_size() {
 }
 
 void Viewport::resizeEvent(QResizeEvent*) {
+  if (card_ != nullptr) card_->setGeometry(rect());
   follow_size();
 }
 
@@ -39,7 +46,28 @@ void Viewport::showEvent(QShowEvent*) {
 
 void Viewport::forget_pictures() {
   picture_.reset();
+  scene_.reset();
+  if (card_ != nullptr) card_->hide();
   update();
+}
+
+bool Viewport::drawn_by_gpu() const {
+  const Mode mode = workspace_.shown().mode;
+  if (card_failed_ || (mode != Mode::surface && mode != Mode::atoms)) return false;
+  switch (workspace_.view_options().drawing) {
+    case ViewOptions::Drawing::cpu:
+      return false;
+    case ViewOptions::Drawing::gpu:
+      return gpu_of_this_machine().sufficient;
+    case ViewOptions::Drawing::automatic:
+      break;
+  }
+  return gpu_of_this_machine().sufficient && !gpu_of_this_machine().software;
+}
+
+bool Viewport::scene_is_shown() const {
+  return scene_ && scene_->material == workspace_.document()->material &&
+         same_scene(scene_->parameters, workspace_.shown());
 }
 
 void Viewport::order() {
@@ -50,25 +78,70 @@ void Viewport::order() {
   // Without the mode's parts nothing can be drawn; the workspace reads them and says so.
   if (!workspace_.has_parts(parts_needed(workspace_.shown()))) return;
   was_settled_ = false;
-  worker_.draw(
-      {++number_, workspace_.document()->material, workspace_.shown(), workspace_.width(), workspace_.height(), false});
+  card_painted_ = false;
+  const bool on_card = drawn_by_gpu();
+  if (on_card && scene_is_shown()) {
+    worker_.stop();
+    show_on_card();
+    return;
+  }
+  worker_.draw({++number_, workspace_.document()->material, workspace_.shown(), workspace_.width(), workspace_.height(),
+                on_card});
 }
 
 void Viewport::take(std::shared_ptr<const WorkerPicture> picture) {
   // Of a document that is gone.
   if (!workspace_.document() || picture->material != workspace_.document()->material) return;
+  if (picture->image.isNull()) {
+    scene_ = std::move(picture);
+    if (drawn_by_gpu() && scene_is_shown()) show_on_card();
+    return;
+  }
+  if (picture->number != number_ && drawn_by_gpu()) return;
   picture_ = std::move(picture);
+  if (card_ != nullptr) card_->hide();
   update();
   emit frame_shown(picture_, 0.0);
 }
 
-bool Viewport::settled() const {
-  return workspace_.document().has_value() && picture_ && picture_->number == number_ && picture_->complete() &&
-         workspace_.has_parts(parts_needed(workspace_.shown()));
+void Viewport::show_on_card() {
+  if (card_ == nullptr) {
+    card_ = new CardView(this);
+    connect(card_, &CardView::painted, this, [this](double ms) {
+      if (!drawn_by_gpu()) return;
+      card_painted_ = true;
+      emit frame_shown(nullptr, ms);
+      if (!was_settled_) {
+        was_settled_ = true;
+        emit became_settled();
+      }
+    });
+    // It cannot draw; the processor can.
+    connect(
+        card_, &CardView::failed, this,
+        [this](const QString& message) {
+          card_failed_ = true;
+          card_->hide();
+          workspace_.say(tr("The graphics card cannot draw this, so the processor does: %1").arg(message));
+          order();
+        },
+        Qt::QueuedConnection);
+    card_->setGeometry(rect());
+  }
+  card_->set(scene_, workspace_.shown(), workspace_.camera(), {});
+  card_->show();
+  picture_.reset();
 }
 
-bool Viewport::drawn_by_gpu() const {
-  return false;
+bool Viewport::settled() const {
+  if (!workspace_.document() || !workspace_.has_parts(parts_needed(workspace_.shown()))) return false;
+  if (drawn_by_gpu()) return card_painted_ && scene_is_shown();
+  return picture_ && picture_->number == number_ && picture_->complete();
+}
+
+QImage Viewport::screenshot() {
+  if (drawn_by_gpu() && card_ != nullptr && card_->isVisible()) return card_->grabFramebuffer();
+  return picture_ ? grab().toImage() : QImage();
 }
 
 void Viewport::paintEvent(QPaintEvent*) {

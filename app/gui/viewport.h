@@ -8,12 +8,12 @@
 #include "app/gui/render_worker.h"
 #include "app/gui/workspace.h"
 
-class QPainter;
-
 namespace atomesh::gui {
 
+class CardView;
+
 // A plain widget, so that where OpenGL runs in software nothing waits for it: pictures of the processor are painted as
-// they are. The graphics card's view (GpuView) lies over it while the card draws, and is made when it first does.
+// they are. The graphics card's view (CardView) lies over it while the card draws, and is made when it first does.
 class Viewport : public QWidget {
   Q_OBJECT
 
@@ -27,6 +27,8 @@ class Viewport : public QWidget {
   bool settled() const;
   // Whether the graphics card draws the shown mode.
   bool drawn_by_gpu() const;
+  // What is on the screen, in device pixels: the picture with what lies over it. Null before the first.
+  QImage screenshot();
 
  signals:
   // A frame is on its way to the screen: of the CPU renderers, with all that is known of it; or (null) of the card,
@@ -44,11 +46,17 @@ class Viewport : public QWidget {
   void take(std::shared_ptr<const WorkerPicture> picture);
   void forget_pictures();
   void follow_size();
+  void show_on_card();
+  bool scene_is_shown() const;
 
   Workspace& workspace_;
   RenderWorker worker_;
   std::uint64_t number_ = 0;                      // of the last order
   std::shared_ptr<const WorkerPicture> picture_;  // the last of the CPU renderers
+  std::shared_ptr<const WorkerPicture> scene_;    // the last scene for the card
+  CardView* card_ = nullptr;                      // once it was needed
+  bool card_painted_ = false;                     // with everything as it is now
+  bool card_failed_ = false;
   bool was_settled_ = false;
 };
 

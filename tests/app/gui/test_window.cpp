@@ -68,6 +68,28 @@ TEST_F(Window, EveryModeShowsTheCommandLinesPicture) {
   }
 }
 
+TEST_F(Window, TheCardDrawsTheSameSurfaceAndBalls) {
+  open_salt();
+  ViewOptions options = window->workspace().view_options();
+  for (const Mode mode : {Mode::surface, Mode::atoms}) {
+    options.drawing = ViewOptions::Drawing::gpu;
+    window->workspace().set_view_options(options);
+    window->workspace().set("mode", std::string(mode_name(mode)));
+    ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); })) << mode_name(mode);
+    ASSERT_TRUE(window->viewport().drawn_by_gpu());
+    const Image card = test::to_image(window->viewport().screenshot());
+    test::keep_screenshot(window->viewport().screenshot(), "card-" + std::string(mode_name(mode)));
+    options.drawing = ViewOptions::Drawing::cpu;
+    window->workspace().set_view_options(options);
+    ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); })) << mode_name(mode);
+    EXPECT_FALSE(window->viewport().drawn_by_gpu());
+    const Image processor = test::to_image(window->viewport().screenshot());
+    const ImageDifference difference = compare_images(card, processor, 2.0 / 255.0);
+    // Pixels whose ray all but touches an edge.
+    EXPECT_LT(difference.pixels_over, card.pixels.size() / 10000) << mode_name(mode);
+  }
+}
+
 TEST_F(Window, KeysOfTheManual) {
   open_salt();
   Workspace& workspace = window->workspace();
