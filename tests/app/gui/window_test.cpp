@@ -78,6 +78,22 @@ void keep_screenshot(const QImage& image, const std::string& name) {
   EXPECT_TRUE(image.save(QDir(folder).filePath(QString::fromStdString(name + ".png"))));
 }
 
+QPalette dark_palette() {
+  QPalette dark(QColor(53, 53, 53));
+  const QColor text(235, 235, 235);
+  for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText, QPalette::ToolTipText}) {
+    dark.setColor(role, text);
+    dark.setColor(QPalette::Disabled, role, QColor(120, 120, 120));
+  }
+  dark.setColor(QPalette::Base, QColor(35, 35, 35));
+  dark.setColor(QPalette::AlternateBase, QColor(45, 45, 45));
+  dark.setColor(QPalette::ToolTipBase, QColor(35, 35, 35));
+  dark.setColor(QPalette::PlaceholderText, QColor(140, 140, 140));
+  dark.setColor(QPalette::Highlight, QColor(42, 130, 218));
+  dark.setColor(QPalette::HighlightedText, Qt::white);
+  return dark;
+}
+
 bool has_opengl() {
   if (QGuiApplication::platformName() != "xcb") return false;
   QOpenGLContext context;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <QImage>
+#include <QPalette>
 #include <QString>
 #include <QWidget>
 #include <functional>
@@ -38,6 +39,9 @@ std::string cracked_salt_dat(const std::string& folder);
 Image to_image(const QImage& image);
 // Into $ATOMESH_SCREENSHOTS where that is set, for people to look at.
 void keep_screenshot(const QImage& image, const std::string& name);
+
+// As a desktop's dark theme has it.
+QPalette dark_palette();
 
 // Whether the test has a real display (Xvfb or the user's) with OpenGL; tests of the viewport say visibly when not.
 bool has_opengl();

@@ -1,0 +1,64 @@
+#include "app/gui/histogram_source.h"
+
+#include "core/error.h"
+
+namespace atomesh::gui {
+
+HistogramSource::HistogramSource(Workspace& workspace, QObject* parent) : QObject(parent), workspace_(workspace) {
+  connect(&workspace, &Workspace::document_changed, this, [this] {
+    job_.cancel();
+    asked_ = {};
+    histogram_.reset();
+    trouble_.clear();
+    emit changed();
+    follow();
+  });
+  connect(&workspace, &Workspace::parts_changed, this, &HistogramSource::follow);
+  connect(&workspace, &Workspace::parameters_changed, this, &HistogramSource::follow);
+}
+
+void HistogramSource::set_wanted(bool wanted) {
+  if (wanted == wanted_) return;
+  wanted_ = wanted;
+  follow();
+}
+
+void HistogramSource::set_bins(int bins) {
+  if (bins < 1 || bins > max_bins) throw UsageError("a histogram has 1 to " + std::to_string(max_bins) + " bins");
+  if (bins == bins_) return;
+  bins_ = bins;
+  follow();
+}
+
+void HistogramSource::follow() {
+  if (!wanted_ || !workspace_.document()) return;
+  const MaterialParts parts{.atoms = true, .tetrahedra = true, .surface = false, .defects = true, .fields = true};
+  if (workspace_.document()->kind == FileKind::material && !workspace_.has_parts(parts)) {
+    workspace_.need_parts(parts);  // and again by parts_changed()
+    return;
+  }
+  Question question{workspace_.document()->material, workspace_.parameters().volume, bins_};
+  question.parameters.color_map = VolumeParameters{}.color_map;
+  question.parameters.alpha_length = VolumeParameters{}.alpha_length;
+  if (question == asked_) return;
+  asked_ = question;
+  const auto result = std::make_shared<ScalarHistogram>();
+  job_.run(
+      tr("Counting scalars"),
+      [question, result](Progress& progress) {
+        *result = scalar_histogram(*question.material, question.parameters, question.bins, progress);
+      },
+      [this, result] {
+        histogram_ = result;
+        trouble_.clear();
+        emit changed();
+      },
+      [this](const QString& message) {
+        histogram_.reset();
+        trouble_ = message;
+        emit changed();
+      });
+  emit changed();
+}
+
+}  // namespace atomesh::gui
