@@ -60,7 +60,11 @@ void write_png(const std::string& path, const Image& image, const PngText& text 
 Image read_png(const std::string& path);
 // The same from bytes in memory; `name` stands for the file in messages.
 Image parse_png(std::string_view bytes, const std::string& name);
-// The texts of a PNG, in file order. Throws InputError as read_png does.
+// By its first bytes. Throws InputError when the file cannot be read.
+bool is_png_file(const std::string& path);
+// The texts of a PNG, in file order. The pixels are passed over: it takes no time and memory for them, whatever the
+// size of the picture, and does not notice when they are damaged. Throws InputError for anything that is no PNG,
+// truncated, or damaged in its texts.
 PngText read_png_text(const std::string& path);
 
 struct ImageDifference {

@@ -90,12 +90,36 @@ bool read_pixels(PngReader& reader, png_bytepp rows) {
   return true;
 }
 
+bool is_png(std::string_view bytes) {
+  return bytes.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) == 0;
+}
+
+// The same PNG up to the head of its first pixels, its texts moved there and other chunks left out: what libpng reads
+// texts from without unpacking the picture. Throws InputError when the file is no PNG or ends within a chunk.
+std::string texts_of(std::string_view bytes, const std::string& path) {
+  if (!is_png(bytes)) throw InputError(path, 0, "not a PNG file");
+  std::string head(bytes.substr(0, 8));
+  std::string_view first_pixels;
+  std::string_view type;
+  for (std::size_t at = 8; type != "IEND";) {
+    if (bytes.size() - at < 12) throw InputError(path, 0, "the PNG cannot be read: the file ends too early");
+    const std::size_t length = png_get_uint_32(reinterpret_cast<png_const_bytep>(bytes.data() + at));
+    if (length > bytes.size() - at - 12) {
+      throw InputError(path, 0, "the PNG cannot be read: the file ends too early");
+    }
+    const std::string_view chunk = bytes.substr(at, length + 12);
+    type = chunk.substr(4, 4);
+    if (type == "IDAT" && first_pixels.empty()) first_pixels = chunk.substr(0, 8);
+    if (type == "IHDR" || type == "PLTE" || type == "tEXt" || type == "zTXt" || type == "iTXt") head += chunk;
+    at += chunk.size();
+  }
+  return head.append(first_pixels);
+}
+
 // Reads a whole picture as 16-bit RGBA, big-endian; throws InputError.
 std::vector<png_byte> read_all(PngReader& reader, std::string_view bytes, const std::string& path, int& width,
                                int& height) {
-  if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0) {
-    throw InputError(path, 0, "not a PNG file");
-  }
+  if (!is_png(bytes)) throw InputError(path, 0, "not a PNG file");
   Source source{bytes.data(), bytes.size()};
   png_uint_32 columns = 0;
   png_uint_32 lines = 0;
@@ -275,6 +299,10 @@ void write_png(const std::string& path, const Image& image, const PngText& text,
   writer.finish();
 }
 
+bool is_png_file(const std::string& path) {
+  return is_png(MappedFile(path).bytes());
+}
+
 Image read_png(const std::string& path) {
   const MappedFile file(path);
   return parse_png(file.bytes(), path);
@@ -297,10 +325,14 @@ Image parse_png(std::string_view bytes, const std::string& name) {
 
 PngText read_png_text(const std::string& path) {
   const MappedFile file(path);
+  const std::string head = texts_of(file.bytes(), path);
   PngReader reader;
-  int width = 0;
-  int height = 0;
-  read_all(reader, file.bytes(), path, width, height);
+  Source source{head.data(), head.size()};
+  png_uint_32 width = 0;
+  png_uint_32 height = 0;
+  if (!read_header(reader, source, width, height)) {
+    throw InputError(path, 0, "the PNG cannot be read: " + std::string(reader.complaint.text));
+  }
   png_textp chunks = nullptr;
   int count = 0;
   png_get_text(reader.png, reader.info, &chunks, &count);

@@ -65,6 +65,8 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
   std::FILE* stream() { return file_; }
+  // What the file is called until commit(), for a library that writes by name.
+  const std::string& place() const { return temporary_.empty() ? path_ : temporary_; }
   void commit();
 
  private:

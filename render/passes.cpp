@@ -22,6 +22,19 @@ void render_in_passes(const Renderer& renderer, const Scene& scene, const Camera
   progress.update(1.0);
 }
 
+double largest_thickness(const Renderer& renderer, const Scene& scene, const Camera& camera,
+                         const Parameters& parameters, int rows, Progress& progress) {
+  std::vector<float> thickness;
+  double largest = 0.0;
+  RenderStats stats;
+  const BandSink keep_largest = [&](Image&, int) {
+    if (thickness.empty()) return;
+    largest = std::max(largest, static_cast<double>(*std::max_element(thickness.begin(), thickness.end())));
+  };
+  render_in_passes(renderer, scene, camera, parameters, rows, stats, {.thickness = &thickness}, keep_largest, progress);
+  return largest;
+}
+
 std::uint64_t pass_bytes_per_row(const Camera& camera, const Parameters& parameters, const Channels& channels) {
   const auto n = static_cast<std::uint64_t>(parameters.supersampling);
   std::uint64_t pixel = sizeof(Vec4f);

@@ -17,6 +17,11 @@ void render_in_passes(const Renderer& renderer, const Scene& scene, const Camera
                       int rows, RenderStats& stats, const Channels& channels, const BandSink& sink,
                       Progress& progress = no_progress());
 
+// The largest of Channels::thickness over the whole picture (mode xray; 0 in the others), drawn `rows` rows at a time:
+// what the scale of a legend goes by, which must not depend on how the picture is drawn.
+double largest_thickness(const Renderer& renderer, const Scene& scene, const Camera& camera,
+                         const Parameters& parameters, int rows, Progress& progress = no_progress());
+
 // Bytes that a pass takes for each row of the picture; what the renderer keeps of the scene comes on top.
 std::uint64_t pass_bytes_per_row(const Camera& camera, const Parameters& parameters, const Channels& channels);
 

@@ -15,6 +15,7 @@
 #include "app/cli/output_file.h"
 #include "app/cli/parameter_text.h"
 #include "app/cli/picture_comparison.h"
+#include "app/cli/picture_text.h"
 #include "app/cli/pipeline_options.h"
 #include "app/cli/render_legend.h"
 #include "app/cli/render_picture.h"
@@ -24,7 +25,6 @@
 #include "core/camera.h"
 #include "core/error.h"
 #include "core/image.h"
-#include "core/parameter_file.h"
 #include "render/renderer.h"
 #include "render/scene.h"
 
@@ -69,7 +69,7 @@ struct RenderArguments {
 // The defaults, then the file, then --mode and --view, then each --set: the more particular wins.
 Parameters chosen_parameters(const RenderArguments& arguments) {
   Parameters parameters;
-  if (!arguments.parameter_file.empty()) parameters = read_crf(arguments.parameter_file);
+  if (!arguments.parameter_file.empty()) parameters = read_parameters(arguments.parameter_file);
   if (!arguments.mode.empty()) parameters.mode = mode_from_name(arguments.mode);
   if (!arguments.view.empty()) set_view(parameters, arguments.view);
   for (const std::string& setting : arguments.settings) {
@@ -83,19 +83,6 @@ Parameters chosen_parameters(const RenderArguments& arguments) {
   if (!arguments.field.empty()) set_parameter(parameters, "volume.field", arguments.field);
   if (arguments.transparent) parameters.background.a = 0.0F;
   return parameters;
-}
-
-PngText picture_text(const RenderArguments& arguments, const Parameters& parameters, const Material& material,
-                     std::string_view renderer) {
-  std::string origin;
-  const Provenance& provenance = material.provenance;
-  if (!provenance.input.empty()) origin += "input=" + provenance.input + "\n";
-  for (const auto& [key, value] : provenance.options) origin += key + "=" + value + "\n";
-  return {{"Software", "atomesh " ATOMESH_VERSION},
-          {"Source", std::filesystem::path(arguments.input).filename().string()},
-          {"atomesh renderer", std::string(renderer)},
-          {"atomesh parameters", parameter_lines(parameters)},
-          {"atomesh provenance", origin}};
 }
 
 std::string difference_path(const std::string& output) {
@@ -151,9 +138,12 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
   }
   const Camera camera = make_camera(parameters, scene.bounds, width, height);
   PictureLegend legend(arguments.legend, parameters.mode);
-  const PictureReport drawn = draw_picture({renderer, loaded.material, scene, camera, parameters, arguments.output,
-                                            picture_text(arguments, parameters, loaded.material, renderer.name())},
-                                           arguments.picture, channel_files, legend, session);
+  const PictureReport drawn =
+      draw_picture({renderer, loaded.material, scene, camera, parameters, arguments.output,
+                    picture_text(arguments.output, arguments.input, hash_of_data(arguments.input, session.progress()),
+                                 loaded.material, parameters, renderer.name(),
+                                 {.legend = arguments.legend.legend, .scale_bar = arguments.legend.scale_bar})},
+                   arguments.picture, channel_files, legend, session);
   const RenderStats& stats = drawn.stats;
   const double total_ms = elapsed_since(start);
 
@@ -198,7 +188,9 @@ Command add_render(CLI::App& app) {
   app.add_option("--mode", arguments->mode, "volume-surface, volume, surface, xray or atoms [volume-surface]")
       ->type_name("MODE");
   app.add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
-  app.add_option("--params", arguments->parameter_file, "Display and rendering parameters")->type_name("F.crf");
+  app.add_option("--params", arguments->parameter_file,
+                 "Display and rendering parameters: of a .crf, or of a picture that atomesh made")
+      ->type_name("F.crf|IMG.png");
   app.add_option("--set", arguments->settings, "Set parameters; later ones win, and all win over --params")
       ->type_name("KEY=VALUE…");
   app.add_option("--view", arguments->view,
@@ -229,6 +221,7 @@ Command add_render(CLI::App& app) {
       "Example:\n"
       "  atomesh render nacl.crb -o nacl.png --mode volume-surface --view iso --set volume_surface.face_alpha=0.3\n"
       "  atomesh render nacl.dat -o atoms.png --mode atoms --size 1920x1080\n"
+      "  atomesh render nacl.crb -o again.png --params nacl.png --size 3840x2160   # the view of another picture\n"
       "  atomesh render combxyz.bin -o comb.png --mode volume --field Density --set volume.alpha_length=0.5\n");
   return [arguments, &app](Session& session) { return run_render(*arguments, app, session); };
 }

@@ -32,21 +32,6 @@ void lay_out(PictureLegend& legend, const Picture& picture, std::optional<double
   legend.lay_out(picture.scene, picture.material, picture.parameters, picture.camera, thickest, session);
 }
 
-// The largest thickness of all pixels, from passes of their own: a legend's scale must not depend on how it is drawn.
-double thickest_of(const Picture& picture, int rows, Session& session) {
-  std::vector<float> thickness;
-  double thickest = 0.0;
-  RenderStats stats;
-  render_in_passes(
-      picture.renderer, picture.scene, picture.camera, picture.parameters, rows, stats, {.thickness = &thickness},
-      [&](Image&, int) {
-        if (thickness.empty()) return;
-        thickest = std::max(thickest, static_cast<double>(*std::max_element(thickness.begin(), thickness.end())));
-      },
-      session.progress());
-  return thickest;
-}
-
 PictureReport draw_at_once(const Picture& picture, ChannelFiles& channel_files, PictureLegend& legend,
                            Session& session) {
   PictureReport report;
@@ -69,7 +54,10 @@ PictureReport draw_in_passes(const Picture& picture, int rows, ChannelFiles& cha
                  "fewer rows at a time (--pass-rows), or a smaller --size");
   PictureReport report;
   std::optional<double> thickest;
-  if (legend.goes_by_thickness()) thickest = thickest_of(picture, rows, session);
+  if (legend.goes_by_thickness()) {
+    thickest = largest_thickness(picture.renderer, picture.scene, picture.camera, picture.parameters, rows,
+                                 session.progress());
+  }
   lay_out(legend, picture, thickest, session);
   const auto [width, height] = std::pair(picture.camera.width, picture.camera.height);
   PngWriter png(picture.output, width, height, picture.parameters.background.a == 1.0F, picture.text);

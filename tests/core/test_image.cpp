@@ -126,6 +126,44 @@ TEST(Png, TextsComeBackInOrder) {
   EXPECT_EQ(folder.count(), 1U);
 }
 
+TEST(Png, TextsAreReadWithoutThePixels) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.png");
+  write_png(file, random_image(9, 9, true), {{"key", "value"}, {"more", std::string(100'000, 'x')}});
+  const std::string bytes = read_bytes(file);
+  EXPECT_TRUE(is_png_file(file));
+
+  // The pixels' checksum is wrong, which only who reads them notices.
+  std::string damaged = bytes;
+  damaged[damaged.find("IDAT") + 6] ^= 1;
+  write_bytes(file, damaged);
+  EXPECT_THROW(read_png(file), InputError);
+  EXPECT_EQ(read_png_text(file).at(1).second.size(), 100'000U);
+
+  // Texts after the pixels are texts too.
+  const std::size_t pixels = bytes.find("IDAT") - 4;
+  const std::size_t end = bytes.find("IEND") - 4;
+  const std::size_t texts = bytes.find("iTXt") - 4;
+  write_bytes(file, bytes.substr(0, texts) + bytes.substr(pixels, end - pixels) + bytes.substr(texts, pixels - texts) +
+                        bytes.substr(end));
+  EXPECT_EQ(read_png(file).width, 9);
+  EXPECT_EQ(read_png_text(file).at(0).second, "value");
+
+  for (std::size_t length = 0; length < 200; ++length) {
+    write_bytes(file, bytes.substr(0, length));
+    EXPECT_THROW(read_png_text(file), InputError) << length;
+  }
+  write_bytes(file, bytes.substr(0, bytes.size() - 1));
+  EXPECT_THROW(read_png_text(file), InputError);
+  std::string no_pixels = bytes;
+  no_pixels.erase(pixels, end - pixels);
+  write_bytes(file, no_pixels);
+  EXPECT_THROW(read_png_text(file), InputError);
+  write_bytes(file, "this is not a picture at all");
+  EXPECT_FALSE(is_png_file(file));
+  EXPECT_THROW(read_png_text(file), InputError);
+}
+
 TEST(Png, EmptyPicturesAndUnwritablePlacesAreErrors) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_png(folder.file("a.png"), Image()), Error);
