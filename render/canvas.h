@@ -1,9 +1,15 @@
 // Simple shapes over a finished picture, or over a band of it.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "core/image.h"
 
 namespace atomesh {
+
+// A place between pixels: the picture's upper left corner is (0, 0), the centre of its first pixel (0.5, 0.5).
+using CanvasPoint = glm::dvec2;
 
 // Pixels of a rectangle: columns left … right-1 and rows top … bottom-1 of the picture.
 struct CanvasBox {
@@ -32,6 +38,11 @@ class Canvas {
   void fill_rounded(const CanvasBox& box, double radius, const Vec4f& color);
   // A frame of that many pixels just outside the box.
   void frame(const CanvasBox& box, int thickness, const Vec4f& color);
+  // A line through the points, with round joints and ends, antialiased; each pixel is covered once however often the
+  // line comes by. `closed`: back to the first.
+  void stroke(std::span<const CanvasPoint> points, bool closed, double width, const Vec4f& color);
+  // A convex polygon, antialiased, its corners in either sense.
+  void fill_convex(std::span<const CanvasPoint> corners, const Vec4f& color);
 
   // What of `box` lies in the band.
   CanvasBox clipped(const CanvasBox& box) const;

@@ -24,15 +24,24 @@ float luma(const Vec4f& color) {
 
 }  // namespace
 
+double overlay_text_size(int width, int height) {
+  return std::clamp(0.024 * std::min(width, height), 9.0, 400.0);
+}
+
+OverlayColors overlay_colors(const Vec4f& background) {
+  if (luma(background) < dark_below) return {Vec4f(0.07F, 0.07F, 0.08F, 1.0F), Vec4f(0.96F, 0.96F, 0.96F, 1.0F)};
+  return {Vec4f(1.0F), Vec4f(0.08F, 0.08F, 0.08F, 1.0F)};
+}
+
 LegendDrawing::LegendDrawing(int width, int height, const Vec4f& background, const std::optional<Legend>& legend,
                              const std::optional<ScaleBar>& scale_bar)
-    : width_(width), height_(height), size_(std::clamp(0.024 * std::min(width, height), 9.0, 400.0)) {
+    : width_(width), height_(height), size_(overlay_text_size(width, height)) {
   margin_ = pixels(0.8);
   pad_ = pixels(0.6);
   line_ = std::max(1, pixels(0.08));
-  const bool dark = luma(background) < dark_below;
-  panel_ = dark ? Vec4f(0.07F, 0.07F, 0.08F, panel_opacity) : Vec4f(1.0F, 1.0F, 1.0F, panel_opacity);
-  ink_ = dark ? Vec4f(0.96F, 0.96F, 0.96F, 1.0F) : Vec4f(0.08F, 0.08F, 0.08F, 1.0F);
+  const OverlayColors colors = overlay_colors(background);
+  panel_ = Vec4f(Vec3f(colors.paper), panel_opacity);
+  ink_ = colors.ink;
   if (legend && legend->scale) lay_out_scale(*legend);
   if (legend && !legend->entries.empty()) lay_out_entries(*legend);
   if (scale_bar) lay_out_scale_bar(*scale_bar);

@@ -7,6 +7,16 @@
 
 namespace atomesh {
 
+// What is written over a picture goes with its size: the em of text, in pixels.
+double overlay_text_size(int width, int height);
+// And with its background (not premultiplied): dark paper and light ink on dark ones, the other way round on others and
+// on none.
+struct OverlayColors {
+  Vec4f paper;  // opaque
+  Vec4f ink;
+};
+OverlayColors overlay_colors(const Vec4f& background);
+
 // Where everything stands; made once for a picture, drawn as often as wanted: into every sub-resolution of a
 // progressive one, into each band of one drawn in passes.
 class LegendDrawing {

@@ -3,6 +3,7 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -104,6 +105,21 @@ void draw_text(Canvas& canvas, std::string_view text, double x, double baseline,
     FT_Set_Transform(font.face(), nullptr, nullptr);
     x += size * font.advance(character);
   }
+}
+
+void draw_text_with_rim(Canvas& canvas, std::string_view text, double x, double baseline, double size,
+                        const Vec4f& color, const Vec4f& rim) {
+  // Lines of text stand on whole rows: so does what is drawn around them.
+  const double reach = std::max(1.0, std::round(0.1 * size));
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const double length = dx != 0 && dy != 0 ? std::sqrt(0.5) : 1.0;
+      if (dx != 0 || dy != 0) {
+        draw_text(canvas, text, x + dx * reach * length, std::round(baseline) + dy * reach * length, size, rim);
+      }
+    }
+  }
+  draw_text(canvas, text, x, baseline, size, color);
 }
 
 bool has_glyph(char32_t character) {

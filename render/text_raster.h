@@ -23,6 +23,10 @@ TextExtent measure_text(std::string_view text, double size);
 // measure_text() does.
 void draw_text(Canvas& canvas, std::string_view text, double x, double baseline, double size, const Vec4f& color);
 
+// The same with a rim of another colour around every letter, to be read over anything.
+void draw_text_with_rim(Canvas& canvas, std::string_view text, double x, double baseline, double size,
+                        const Vec4f& color, const Vec4f& rim);
+
 // Whether the font has it.
 bool has_glyph(char32_t character);
 

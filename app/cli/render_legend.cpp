@@ -30,6 +30,8 @@ void add_legend_options(CLI::App& app, LegendOptions& options) {
       "range, the defects' colors, or the species");
   app.add_flag("--scale-bar", options.scale_bar,
                "Draw how long a round number of Å or nm is; in perspective at the depth of the sample's center");
+  app.add_flag("--tripod", options.tripod,
+               "Draw which way x, y and z point and, where they differ, the cell's a, b and c");
 }
 
 Channels PictureLegend::channels(const Channels& wanted) {
@@ -58,17 +60,24 @@ void PictureLegend::lay_out(const Scene& scene, const Material& material, const 
     if (!scale_bar_) session.note("--scale-bar: the sample's center is not in front of the viewer");
   }
   drawing_.emplace(camera.width, camera.height, parameters.background, legend_, scale_bar_);
+  if (options_.tripod) {
+    tripods_ = make_tripods(material.unit_cell);
+    const auto& bar = drawing_->scale_bar_box();
+    tripod_.emplace(camera, parameters.background, tripods_, bar ? bar->top : camera.height);
+  }
   const auto too_small = [&](const char* option) {
     session.note(
         fmt::format("{}: the picture of {}x{} pixels has no room for it", option, camera.width, camera.height));
   };
   if (legend_ && !drawing_->legend_box()) too_small("--legend");
   if (scale_bar_ && !drawing_->scale_bar_box()) too_small("--scale-bar");
+  if (tripod_ && !tripod_->box()) too_small("--tripod");
 }
 
 void PictureLegend::draw(Image& band, int first_row) const {
   Canvas canvas(band, first_row);
   if (drawing_) drawing_->draw(canvas);
+  if (tripod_) tripod_->draw(canvas);
 }
 
 void PictureLegend::add_to(Json& json) const {
@@ -94,6 +103,13 @@ void PictureLegend::add_to(Json& json) const {
                                         {"pixels", scale_bar_->pixels},
                                         {"text", scale_bar_->text},
                                         {"box", box_json(*drawing_->scale_bar_box())}}));
+  }
+  if (tripod_ && tripod_->box()) {
+    Json arrows = Json::array();
+    for (const auto& tripod : tripods_) {
+      for (const TripodArrow& arrow : tripod) arrows.push(arrow.name);
+    }
+    json.set("tripod", Json::object({{"arrows", arrows}, {"box", box_json(*tripod_->box())}}));
   }
 }
 

@@ -1,4 +1,4 @@
-// --legend and --scale-bar of render: what of them a picture gets, into the picture and into --json.
+// --legend, --scale-bar and --tripod of render: what of them a picture gets, into the picture and into --json.
 #pragma once
 
 #include <optional>
@@ -11,6 +11,7 @@
 #include "core/parameters.h"
 #include "render/legend_drawing.h"
 #include "render/renderer.h"
+#include "render/tripod.h"
 
 namespace CLI {
 class App;
@@ -23,6 +24,7 @@ class Session;
 struct LegendOptions {
   bool legend = false;
   bool scale_bar = false;
+  bool tripod = false;
 };
 void add_legend_options(CLI::App& app, LegendOptions& options);
 
@@ -46,7 +48,7 @@ class PictureLegend {
   // Into a finished picture, or the band of it that begins at this row.
   void draw(Image& band, int first_row = 0) const;
 
-  // Adds "legend" and "scale_bar", where they were drawn.
+  // Adds "legend", "scale_bar" and "tripod", where they were drawn.
   void add_to(Json& json) const;
 
  private:
@@ -57,6 +59,8 @@ class PictureLegend {
   std::optional<Legend> legend_;
   std::optional<ScaleBar> scale_bar_;
   std::optional<LegendDrawing> drawing_;
+  std::vector<std::vector<TripodArrow>> tripods_;
+  std::optional<TripodDrawing> tripod_;
 };
 
 }  // namespace atomesh::cli
