@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <QCloseEvent>
+#include <QDockWidget>
 #include <QFileInfo>
 #include <QLabel>
 #include <QMessageBox>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "app/gui/job.h"
+#include "app/gui/material_panel.h"
 #include "app/gui/render_worker.h"
 #include "app/gui/viewport.h"
 #include "core/error.h"

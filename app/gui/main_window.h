@@ -8,6 +8,7 @@
 
 class QAction;
 class QActionGroup;
+class QDockWidget;
 class QLabel;
 class QMenu;
 class QProgressBar;
@@ -49,6 +50,7 @@ class MainWindow : public QMainWindow {
  private:
   void build_pages();
   void build_docks();
+  QDockWidget* add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area);
   void build_menus();
   void build_file_menu();
   void build_edit_menu();
@@ -80,6 +82,7 @@ class MainWindow : public QMainWindow {
   QActionGroup* projections_ = nullptr;
   QAction* full_screen_ = nullptr;
   std::vector<QAction*> needing_document_;
+  std::vector<QDockWidget*> docks_;
   QMenu* docks_menu_ = nullptr;
   QLabel* counts_ = nullptr;
   QLabel* frame_ = nullptr;

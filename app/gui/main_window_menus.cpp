@@ -1,6 +1,7 @@
 #include <QAction>
 #include <QActionGroup>
 #include <QApplication>
+#include <QDockWidget>
 #include <QFileDialog>
 #include <QMenu>
 #include <QMenuBar>
@@ -202,6 +203,7 @@ void MainWindow::build_window_menu() {
   full_screen_->setShortcut(Qt::Key_F);
   full_screen_->setCheckable(true);
   docks_menu_->addSeparator();
+  for (QDockWidget* dock : docks_) docks_menu_->addAction(dock->toggleViewAction());
 }
 
 void MainWindow::build_help_menu() {
