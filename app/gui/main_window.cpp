@@ -80,8 +80,20 @@ void MainWindow::build_pages() {
   setCentralWidget(pages_);
 }
 
+QDockWidget* MainWindow::add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area) {
+  auto* dock = new QDockWidget(title, this);
+  dock->setObjectName(content->objectName() + "_dock");
+  dock->setWidget(content);
+  addDockWidget(area, dock);
+  docks_.push_back(dock);
+  return dock;
+}
+
 void MainWindow::build_docks() {
   setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
+  setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
+  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+  add_dock(new MaterialPanel(workspace_), tr("Material"), Qt::LeftDockWidgetArea);
 }
 
 void MainWindow::build_status_line() {
