@@ -47,6 +47,8 @@ struct WorkerPicture {
 
 // Of format RGB32, or ARGB32 where a pixel is not opaque; channels rounded to the nearest of 256 as write_png() does.
 QImage to_qimage(const Image& image);
+// Of format ARGB32_Premultiplied, for what is transparent nearly everywhere.
+QImage to_overlay(const Image& image);
 
 // A new order ends the one that is drawn, once that has given its first picture: while the view turns there is always
 // one to see. An order whose picture should be done within an instant (by how long the last took) is drawn whole;

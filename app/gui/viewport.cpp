@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/gui/card_view.h"
+#include "app/gui/overlay.h"
 
 namespace atomesh::gui {
 
@@ -20,8 +21,11 @@ Viewport::Viewport(Workspace& workspace, QWidget* parent) : QWidget(parent), wor
   connect(&workspace_, &Workspace::document_changed, this, &Viewport::forget_pictures);
   connect(&workspace_, &Workspace::view_options_changed, this, [this] {
     card_failed_ = false;
+    refresh_overlay();
     order();
   });
+  connect(&workspace_, &Workspace::picks_changed, this, &Viewport::refresh_overlay);
+  connect(&workspace_, &Workspace::marks_changed, this, &Viewport::refresh_overlay);
 }
 
 Viewport::~Viewport() {
@@ -100,8 +104,27 @@ void Viewport::take(std::shared_ptr<const WorkerPicture> picture) {
   if (picture->number != number_ && drawn_by_gpu()) return;
   picture_ = std::move(picture);
   if (card_ != nullptr) card_->hide();
-  update();
+  refresh_overlay();
   emit frame_shown(picture_, 0.0);
+}
+
+QImage Viewport::overlay(const WorkerPicture& of, const Parameters& parameters, const Camera& camera) const {
+  OverlayParts parts = overlay_parts(workspace_.view_options(), *of.scene, *of.material, parameters, camera,
+                                     of.max_thickness, workspace_.marks());
+  add_picks(parts, workspace_.picks(), *of.material, parameters);
+  Image image(camera.width, camera.height);
+  draw_overlay(image, 0, camera, *of.material, parameters.background, parts);
+  return to_overlay(image);
+}
+
+void Viewport::refresh_overlay() {
+  if (!workspace_.document()) return;
+  if (drawn_by_gpu() && card_ != nullptr && scene_is_shown()) {
+    show_on_card();
+  } else if (picture_) {
+    overlay_ = overlay(*picture_, picture_->parameters, picture_->camera);
+  }
+  update();
 }
 
 void Viewport::show_on_card() {
@@ -128,7 +151,8 @@ void Viewport::show_on_card() {
         Qt::QueuedConnection);
     card_->setGeometry(rect());
   }
-  card_->set(scene_, workspace_.shown(), workspace_.camera(), {});
+  const Camera camera = workspace_.camera();
+  card_->set(scene_, workspace_.shown(), camera, overlay(*scene_, workspace_.shown(), camera));
   card_->show();
   picture_.reset();
 }
@@ -153,6 +177,7 @@ void Viewport::paintEvent(QPaintEvent*) {
     if (picture_->image.size() == size() * devicePixelRatioF()) {
       painter.scale(1.0 / devicePixelRatioF(), 1.0 / devicePixelRatioF());
       painter.drawImage(0, 0, picture_->image);
+      painter.drawImage(0, 0, overlay_);
     } else {
       painter.drawImage(rect(), picture_->image);  // until the one of the new size is there
     }

@@ -48,6 +48,8 @@ class Viewport : public QWidget {
   void follow_size();
   void show_on_card();
   bool scene_is_shown() const;
+  void refresh_overlay();
+  QImage overlay(const WorkerPicture& of, const Parameters& parameters, const Camera& camera) const;
 
   Workspace& workspace_;
   RenderWorker worker_;
@@ -57,6 +59,7 @@ class Viewport : public QWidget {
   CardView* card_ = nullptr;                      // once it was needed
   bool card_painted_ = false;                     // with everything as it is now
   bool card_failed_ = false;
+  QImage overlay_;  // of `picture_`
   bool was_settled_ = false;
 };
 

@@ -71,6 +71,7 @@ TEST_F(Window, EveryModeShowsTheCommandLinesPicture) {
 TEST_F(Window, TheCardDrawsTheSameSurfaceAndBalls) {
   open_salt();
   ViewOptions options = window->workspace().view_options();
+  options.legend = options.tripod = options.scale_bar = false;
   for (const Mode mode : {Mode::surface, Mode::atoms}) {
     options.drawing = ViewOptions::Drawing::gpu;
     window->workspace().set_view_options(options);
