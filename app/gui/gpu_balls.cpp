@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "app/gui/gpu_ball_lists.h"
 #include "app/gui/gpu_buffers.h"
 #include "app/gui/gpu_drawing.h"
 #include "app/gui/gpu_shaders.h"
@@ -21,30 +22,55 @@ constexpr std::size_t ball_floats = 9;
 static_assert(sizeof(Ball) == ball_floats * sizeof(float));
 static_assert(offsetof(Ball, center) == 0 && offsetof(Ball, radius) == 12 && offsetof(Ball, color) == 16);
 
-// Each pixel's nearest ball is found first and shaded then, once, however many balls lie behind one another. Of balls
-// that are not opaque layer is peeled off behind layer, until no pixel sees further.
+// While it lives other framebuffers may be bound.
+class OwnFramebuffers {
+ public:
+  explicit OwnFramebuffers(vtkOpenGLState& state) : state_(state) { state_.PushFramebufferBindings(); }
+  ~OwnFramebuffers() { state_.PopFramebufferBindings(); }
+  OwnFramebuffers(const OwnFramebuffers&) = delete;
+  OwnFramebuffers& operator=(const OwnFramebuffers&) = delete;
+
+ private:
+  vtkOpenGLState& state_;
+};
+
+// As the shader knows them.
+enum class Wanted { all, opaque, transparent };
+
+// Each pixel's nearest ball is found first and shaded then, once, however many balls lie behind one another. Balls
+// that are not opaque are composed from lists of each pixel's hits or, where there can be none, peeled off layer behind
+// layer until no pixel sees further.
 class GpuBalls final : public GpuDrawing {
  public:
-  explicit GpuBalls(std::shared_ptr<const Scene> scene)
-      : scene_(std::move(scene)), opaque_(std::all_of(scene_->balls.begin(), scene_->balls.end(), [](const Ball& ball) {
-          return ball.color.a >= 1.0F;
-        })) {}
+  GpuBalls(std::shared_ptr<const Scene> scene, const GpuLimits& limits)
+      : scene_(std::move(scene)),
+        opaque_(std::all_of(scene_->balls.begin(), scene_->balls.end(),
+                            [](const Ball& ball) { return ball.color.a >= 1.0F; })),
+        limits_(limits) {
+    lists_.set_room(limits.list_bytes);
+  }
 
   void draw(vtkOpenGLRenderWindow& window, const GpuView& view, const Parameters&) override {
     if (scene_->balls.empty()) return;
     vtkOpenGLState& state = *window.GetState();
     layers_[0].resize(window, view.width, view.height);
-    if (whole_picture_ == 0) glGenVertexArrays(1, &whole_picture_);
-    state.PushFramebufferBindings();
+    if (no_attributes_ == 0) glGenVertexArrays(1, &no_attributes_);
+    if (parts_.empty()) upload();
     state.vtkglDepthFunc(GL_LESS);
     state.vtkglDisable(GL_CULL_FACE);
     if (opaque_) {
-      draw_layer(window, view, 0);
-      state.PopFramebufferBindings();
+      {
+        const OwnFramebuffers own(state);
+        draw_layer(window, view, 0, Wanted::all);
+      }
       shade_layer(window, view, 0);
     } else {
-      peel(window, view);
-      state.PopFramebufferBindings();
+      {
+        const OwnFramebuffers own(state);
+        layers_[1].resize(window, view.width, view.height);
+        light_.resize(window, view.width, view.height);
+        if (!compose_lists(window, view)) peel(window, view);
+      }
       lay_light(window);
     }
     glBindVertexArray(0);
@@ -56,76 +82,67 @@ class GpuBalls final : public GpuDrawing {
   }
 
   void release() override {
-    for (Part& part : parts_) {
-      delete_vertex_array(part.instances);
+    for (GpuBallPart& part : parts_) {
       delete_texture(part.texture);
-      delete_buffer(part.balls);
+      delete_buffer(part.buffer);
     }
     parts_.clear();
     for (GpuTarget& layer : layers_) layer.release();
     light_.release();
-    delete_vertex_array(whole_picture_);
+    lists_.release();
+    delete_vertex_array(no_attributes_);
     if (seen_ != 0) glDeleteQueries(1, &seen_);
     seen_ = 0;
     for (GpuProgram* program : {&layer_program_, &shading_program_, &copy_program_}) program->program = nullptr;
   }
 
  private:
-  // As many balls as a texture of them can hold.
-  struct Part {
-    unsigned balls = 0;
-    unsigned texture = 0;
-    unsigned instances = 0;
-    int first = 0;
-    int count = 0;
-  };
-
   static void bind_texture(vtkOpenGLState& state, unsigned unit, unsigned kind, unsigned texture) {
     state.vtkglActiveTexture(GL_TEXTURE0 + unit);
     glBindTexture(kind, texture);
   }
 
-  void upload(vtkShaderProgram& program) {
-    const std::size_t most = largest_buffer_texture() / ball_floats;
+  void upload() {
+    const std::size_t most = std::min(largest_buffer_texture(), limits_.texture_floats) / ball_floats;
     for (std::size_t first = 0; first < scene_->balls.size(); first += most) {
       const std::size_t count = std::min(most, scene_->balls.size() - first);
-      Part part;
-      part.balls = make_buffer(&scene_->balls[first], count * sizeof(Ball));
-      part.texture = make_buffer_texture(part.balls);
+      GpuBallPart part;
+      part.buffer = make_buffer(&scene_->balls[first], count * sizeof(Ball));
+      part.texture = make_buffer_texture(part.buffer);
       part.first = static_cast<int>(first);
       part.count = static_cast<int>(count);
-      glGenVertexArrays(1, &part.instances);
-      glBindVertexArray(part.instances);
-      set_attribute(program, "center", part.balls, 3, sizeof(Ball), offsetof(Ball, center), 1);
-      set_attribute(program, "radius", part.balls, 1, sizeof(Ball), offsetof(Ball, radius), 1);
       parts_.push_back(part);
     }
   }
 
   // The nearest balls, or those next behind the layer before.
-  void draw_layer(vtkOpenGLRenderWindow& window, const GpuView& view, int layer) {
+  void draw_layer(vtkOpenGLRenderWindow& window, const GpuView& view, int layer, Wanted wanted) {
     vtkOpenGLState& state = *window.GetState();
     const GpuTarget& before = layers_[static_cast<std::size_t>((layer + 1) % 2)];
     vtkShaderProgram& program = layer_program_.use(window);
-    if (parts_.empty()) upload(program);
-    layers_[static_cast<std::size_t>(layer % 2)].begin(window);
+    layers_[static_cast<std::size_t>(layer % 2)].bind(window);
+    layers_[static_cast<std::size_t>(layer % 2)].clear(window);
     tell(view, program);
+    program.SetUniformi("wanted", static_cast<int>(wanted));
     program.SetUniformi("layer", layer);
     program.SetUniformf("opaque", static_cast<float>(1.0 - faintest));
     program.SetUniformi("layer_before", 0);
     program.SetUniformi("depth_before", 1);
     program.SetUniformi("light", 2);
+    program.SetUniformi("balls", 3);
     bind_texture(state, 2, GL_TEXTURE_2D, layer > 0 ? light_.texture() : 0);
     bind_texture(state, 1, GL_TEXTURE_2D, layer > 0 ? before.depths() : 0);
     bind_texture(state, 0, GL_TEXTURE_2D, layer > 0 ? before.texture() : 0);
     state.vtkglEnable(GL_DEPTH_TEST);
     state.vtkglDepthMask(GL_TRUE);
     state.vtkglDisable(GL_BLEND);
-    for (const Part& part : parts_) {
+    glBindVertexArray(no_attributes_);
+    for (const GpuBallPart& part : parts_) {
       program.SetUniformi("first", part.first);
-      glBindVertexArray(part.instances);
-      glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, part.count);
+      bind_texture(state, 3, GL_TEXTURE_BUFFER, part.texture);
+      glDrawArrays(GL_TRIANGLES, 0, vertices_of_a_ball * part.count);
     }
+    bind_texture(state, 3, GL_TEXTURE_BUFFER, 0);
     for (const unsigned unit : {2U, 1U, 0U}) bind_texture(state, unit, GL_TEXTURE_2D, 0);
   }
 
@@ -140,8 +157,8 @@ class GpuBalls final : public GpuDrawing {
     program.SetUniformf("diffuse_share", optics::diffuse_share);
     state.vtkglDisable(GL_DEPTH_TEST);
     bind_texture(state, 0, GL_TEXTURE_2D, layers_[static_cast<std::size_t>(layer % 2)].texture());
-    glBindVertexArray(whole_picture_);
-    for (const Part& part : parts_) {
+    glBindVertexArray(no_attributes_);
+    for (const GpuBallPart& part : parts_) {
       bind_texture(state, 1, GL_TEXTURE_BUFFER, part.texture);
       program.SetUniformi("first", part.first);
       program.SetUniformi("count", part.count);
@@ -154,22 +171,38 @@ class GpuBalls final : public GpuDrawing {
   // All layers that are seen, front to back, into light_.
   void peel(vtkOpenGLRenderWindow& window, const GpuView& view) {
     vtkOpenGLState& state = *window.GetState();
-    layers_[1].resize(window, view.width, view.height);
-    light_.resize(window, view.width, view.height);
     if (seen_ == 0) glGenQueries(1, &seen_);
-    light_.begin(window);
+    light_.bind(window);
+    light_.clear(window);
     for (int layer = 0;; ++layer) {
       glBeginQuery(GL_SAMPLES_PASSED, seen_);
-      draw_layer(window, view, layer);
+      draw_layer(window, view, layer, Wanted::all);
       glEndQuery(GL_SAMPLES_PASSED);
       GLuint pixels = 0;
       glGetQueryObjectuiv(seen_, GL_QUERY_RESULT, &pixels);
       if (pixels == 0) return;
       light_.bind(window);
-      state.vtkglEnable(GL_BLEND);
-      state.vtkglBlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_ONE, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+      blend_behind(state);
       shade_layer(window, view, layer);
     }
+  }
+
+  // The same by lists of hits. False where that cannot be.
+  bool compose_lists(vtkOpenGLRenderWindow& window, const GpuView& view) {
+    if (!limits_.lists || parts_.size() != 1 || !GpuBallLists::possible()) return false;
+    draw_layer(window, view, 0, Wanted::opaque);
+    light_.bind(window);
+    light_.clear(window);
+    if (!lists_.compose(window, view, parts_[0], no_attributes_, layers_[0], layers_[1], light_)) return false;
+    blend_behind(*window.GetState());
+    shade_layer(window, view, 0);
+    return true;
+  }
+
+  // What is drawn next shines through what is there already.
+  static void blend_behind(vtkOpenGLState& state) {
+    state.vtkglEnable(GL_BLEND);
+    state.vtkglBlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_ONE, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
   }
 
   // Over the background.
@@ -181,26 +214,28 @@ class GpuBalls final : public GpuDrawing {
     state.vtkglDisable(GL_DEPTH_TEST);
     state.vtkglEnable(GL_BLEND);
     state.vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    glBindVertexArray(whole_picture_);
+    glBindVertexArray(no_attributes_);
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
 
   std::shared_ptr<const Scene> scene_;
   bool opaque_;
-  std::vector<Part> parts_;
+  GpuLimits limits_;
+  std::vector<GpuBallPart> parts_;  // of as many balls as a texture of them can hold
   GpuProgram layer_program_{"atom balls", ball_vertex_shader, ball_layer_shader};
   GpuProgram shading_program_{"lit atom balls", whole_picture_vertex_shader, ball_shading_shader};
   GpuProgram copy_program_{"pictures", whole_picture_vertex_shader, copy_shader};
   std::array<GpuTarget, 2> layers_{GpuTarget(GpuTarget::Kind::balls), GpuTarget(GpuTarget::Kind::balls)};
   GpuTarget light_{GpuTarget::Kind::light};
-  unsigned whole_picture_ = 0;  // a vertex array without attributes
+  GpuBallLists lists_;
+  unsigned no_attributes_ = 0;  // a vertex array: shaders find what they need by the vertices' numbers
   unsigned seen_ = 0;           // a query
 };
 
 }  // namespace
 
-std::unique_ptr<GpuDrawing> make_gpu_balls(std::shared_ptr<const Scene> scene) {
-  return std::make_unique<GpuBalls>(std::move(scene));
+std::unique_ptr<GpuDrawing> make_gpu_balls(std::shared_ptr<const Scene> scene, const GpuLimits& limits) {
+  return std::make_unique<GpuBalls>(std::move(scene), limits);
 }
 
 }  // namespace atomesh::gui

@@ -128,8 +128,7 @@ void GpuTarget::bind(vtkOpenGLRenderWindow& window) const {
   state.vtkglDisable(GL_SCISSOR_TEST);
 }
 
-void GpuTarget::begin(vtkOpenGLRenderWindow& window) const {
-  bind(window);
+void GpuTarget::clear(vtkOpenGLRenderWindow& window) const {
   if (kind_ == Kind::balls) {
     const std::array<GLuint, 4> none{0xFFFFFFFFU, 0, 0, 0};
     const GLfloat farthest = 1.0F;

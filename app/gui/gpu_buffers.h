@@ -30,9 +30,10 @@ class GpuTarget {
   explicit GpuTarget(Kind kind) : kind_(kind) {}
   // Of this size, made anew where it is not. Throws UnavailableError when the card has no room.
   void resize(vtkOpenGLRenderWindow& window, int width, int height);
-  // To be drawn into from now on, whole; begin() clears it to no ball, farthest, or no light.
+  // To be drawn into from now on, whole.
   void bind(vtkOpenGLRenderWindow& window) const;
-  void begin(vtkOpenGLRenderWindow& window) const;
+  // To no ball, farthest, or no light. It is bound.
+  void clear(vtkOpenGLRenderWindow& window) const;
   unsigned texture() const { return texture_; }
   unsigned depths() const { return depths_; }
   void release();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/gui/gpu_scene.h"
 #include "core/camera.h"
 #include "core/parameters.h"
 #include "render/scene.h"
@@ -54,7 +55,7 @@ class GpuDrawing {
   // Gives everything back; the next draw() uploads again.
   virtual void release() = 0;
 };
-std::unique_ptr<GpuDrawing> make_gpu_surface(std::shared_ptr<const Scene> scene);
-std::unique_ptr<GpuDrawing> make_gpu_balls(std::shared_ptr<const Scene> scene);
+std::unique_ptr<GpuDrawing> make_gpu_surface(std::shared_ptr<const Scene> scene, const GpuLimits& limits);
+std::unique_ptr<GpuDrawing> make_gpu_balls(std::shared_ptr<const Scene> scene, const GpuLimits& limits);
 
 }  // namespace atomesh::gui

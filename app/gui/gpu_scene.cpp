@@ -89,6 +89,8 @@ class BoundFramebuffer {
 
 class GpuScene::Pipeline {
  public:
+  explicit Pipeline(const GpuLimits& limits) : limits_(limits) {}
+
   void set_scene(std::shared_ptr<const Scene> scene) {
     if (scene && scene->mode != Mode::surface && scene->mode != Mode::atoms) {
       throw UsageError("the graphics card draws modes surface and atoms, not " + std::string(mode_name(scene->mode)));
@@ -159,7 +161,8 @@ class GpuScene::Pipeline {
     if (!stale_) return;
     if (drawing_) drawing_->release();
     drawing_ = nullptr;
-    if (scene_) drawing_ = scene_->mode == Mode::atoms ? make_gpu_balls(scene_) : make_gpu_surface(scene_);
+    if (scene_)
+      drawing_ = scene_->mode == Mode::atoms ? make_gpu_balls(scene_, limits_) : make_gpu_surface(scene_, limits_);
     stale_ = false;
   }
 
@@ -202,6 +205,7 @@ class GpuScene::Pipeline {
     window_->GetShaderCache()->ReleaseCurrentShader();
   }
 
+  GpuLimits limits_;
   std::shared_ptr<const Scene> scene_;
   bool stale_ = false;  // the drawing is not yet the scene's
   std::unique_ptr<GpuDrawing> drawing_;
@@ -212,7 +216,7 @@ class GpuScene::Pipeline {
   unsigned whole_picture_ = 0;
 };
 
-GpuScene::GpuScene() : pipeline_(std::make_unique<Pipeline>()) {}
+GpuScene::GpuScene(const GpuLimits& limits) : pipeline_(std::make_unique<Pipeline>(limits)) {}
 GpuScene::~GpuScene() = default;
 
 void GpuScene::set_scene(std::shared_ptr<const Scene> scene) {

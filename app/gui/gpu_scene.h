@@ -1,7 +1,9 @@
 // Surfaces and atom balls by VTK on the graphics card, in an OpenGL context of somebody else's.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -11,13 +13,20 @@
 
 namespace atomesh::gui {
 
+// What a card is taken to be capable of, at most; less than it is, for tests.
+struct GpuLimits {
+  bool lists = true;  // transparent balls by OpenGL 4.5 where there is that, not peeled as OpenGL 3.2 can
+  std::size_t list_bytes = std::size_t{400} * 1000 * 1000;       // of those lists
+  std::size_t texture_floats = std::numeric_limits<int>::max();  // of a buffer texture
+};
+
 // Draws the same pictures as render() does in modes surface and atoms: camera, lights, cut planes, background, colours,
 // opacities, supersampling; a test compares them. On the card lie 36 bytes a ball, or 24 a vertex and 24 a triangle; a
 // view that changes sends nothing but a few numbers. All calls with the context current, which has OpenGL 3.2 (core) or
 // later and, VTK's condition, came through GLX or WGL (not EGL).
 class GpuScene {
  public:
-  GpuScene();
+  explicit GpuScene(const GpuLimits& limits = {});
   // release() before, unless the context is gone already.
   ~GpuScene();
   GpuScene(const GpuScene&) = delete;

@@ -5,6 +5,7 @@ namespace atomesh::gui {
 namespace {
 
 constexpr const char* version = "#version 150\n";
+constexpr const char* later_version = "#version 450\n";  // for lists
 
 // GpuView.
 constexpr const char* view_declarations = R"(
@@ -50,6 +51,12 @@ vec3 phong(vec3 ambient, vec3 diffuse, vec3 specular, vec3 emission, float shini
 }
 )";
 
+// A number of a ball, as struct Ball has them.
+constexpr const char* ball_parts = R"(
+uniform samplerBuffer balls;
+float part(int ball, int k) { return texelFetch(balls, 9 * ball + k).x; }
+)";
+
 // The front hit of a ball in the eye's space; negative where there is none. The normal comes without the difference of
 // two large numbers.
 constexpr const char* ball_hit = R"(
@@ -65,6 +72,34 @@ float length_to_ball(vec3 center, float radius, vec3 origin, vec3 direction, out
 }
 )";
 
+std::string in_later_version(std::string shader) {
+  return shader.replace(0, std::string(version).size(), later_version);
+}
+
+// What a ball shows to the fragment's ray, and its opacity.
+constexpr const char* shaded_ball = R"(
+uniform float ambient_share;
+uniform float diffuse_share;
+vec4 shaded(int ball) {
+  vec3 center = in_eye_space(vec3(part(ball, 0), part(ball, 1), part(ball, 2)));
+  vec4 own = vec4(part(ball, 4), part(ball, 5), part(ball, 6), part(ball, 7));
+  vec3 origin;
+  vec3 direction;
+  vec3 normal;
+  look(origin, direction);
+  float at = length_to_ball(center, part(ball, 3), origin, direction, normal);
+  return vec4(phong(ambient_share * own.rgb, diffuse_share * own.rgb, vec3(0.2), vec3(0.0), 30.0,
+                    origin + at * direction, normalize(normal), -direction), own.a);
+}
+)";
+
+// Each pixel's hits as a list: three numbers each, the next one's place, the ball, and the length to it.
+constexpr const char* lists = R"(
+layout(binding = 0, r32ui) coherent uniform uimage2D heads;
+layout(std430, binding = 0) coherent buffer Hits { uint hits[]; };
+const uint none = 0xFFFFFFFFu;
+)";
+
 }  // namespace
 
 std::string whole_picture_vertex_shader() {
@@ -74,10 +109,9 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2
 }
 
 std::string ball_vertex_shader() {
-  return std::string(version) + view_declarations + to_eye_space + R"(
-in vec3 center;
-in float radius;
+  return std::string(version) + view_declarations + to_eye_space + ball_parts + R"(
 uniform int first;
+uniform int wanted;  // 0: all balls, 1: opaque ones, 2: the others
 flat out vec4 ball;
 flat out uint index;
 
@@ -89,11 +123,16 @@ vec2 tangent_slopes(float x, float z, float r) {
 }
 
 void main() {
-  vec3 c = in_eye_space(center);
+  int number = gl_VertexID / 6;
+  int corner_number = gl_VertexID - 6 * number;
+  float radius = part(number, 3);
+  vec3 c = in_eye_space(vec3(part(number, 0), part(number, 1), part(number, 2)));
   float r = radius * 1.00001;
   ball = vec4(c, radius);
-  index = uint(first + gl_InstanceID);
-  bvec2 far_corner = bvec2((gl_VertexID & 1) != 0, (gl_VertexID & 2) != 0);
+  index = uint(first + number);
+  // Two triangles: corners 0, 1, 2 and 3, 2, 1 of 0 to 3.
+  int of_four = corner_number < 3 ? corner_number : 6 - corner_number;
+  bvec2 far_corner = bvec2((of_four & 1) != 0, (of_four & 2) != 0);
   vec2 all = 0.5 * picture * pixel;
   vec2 low = c.xy - r;
   vec2 high = c.xy + r;
@@ -115,7 +154,8 @@ void main() {
   high = min(high + 0.05 * pixel, 1.1 * all);
   float depth = max(0.0, nearest * reach * 0.99999 - 1e-6);
   vec2 corner = vec2(far_corner.x ? high.x : low.x, far_corner.y ? high.y : low.y);
-  gl_Position = c.z + r <= 0.0 ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(corner / all, 2.0 * depth - 1.0, 1.0);
+  bool drawn = c.z + r > 0.0 && (wanted == 0 || (part(number, 7) >= 1.0) == (wanted == 1));
+  gl_Position = drawn ? vec4(corner / all, 2.0 * depth - 1.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }
 )";
 }
@@ -157,31 +197,109 @@ void main() {
 }
 
 std::string ball_shading_shader() {
-  return std::string(version) + view_declarations + to_eye_space + sight + phong + ball_hit + R"(
+  return std::string(version) + view_declarations + to_eye_space + sight + phong + ball_parts + ball_hit + shaded_ball +
+         R"(
 uniform usampler2D hits;
-uniform samplerBuffer balls;
 uniform int first;
 uniform int count;
-uniform float ambient_share;
-uniform float diffuse_share;
 out vec4 color;
-
-float part(int ball, int k) { return texelFetch(balls, 9 * ball + k).x; }
 
 void main() {
   uint hit = texelFetch(hits, ivec2(gl_FragCoord.xy), 0).x;
   int ball = int(hit) - first;
   if (hit == 0xFFFFFFFFu || ball < 0 || ball >= count) discard;
-  vec3 center = in_eye_space(vec3(part(ball, 0), part(ball, 1), part(ball, 2)));
-  vec4 own = vec4(part(ball, 4), part(ball, 5), part(ball, 6), part(ball, 7));
+  vec4 lit = shaded(ball);
+  color = vec4(lit.a * lit.rgb, lit.a);
+}
+)";
+}
+
+std::string list_vertex_shader() {
+  return in_later_version(ball_vertex_shader());
+}
+
+std::string list_shader() {
+  return std::string(later_version) + view_declarations + sight + ball_hit + lists + R"(
+layout(binding = 0) uniform atomic_uint used;
+flat in vec4 ball;
+flat in uint index;
+uniform int room;  // for so many hits; those beyond are only counted
+uniform usampler2D opaque_ball;
+uniform sampler2D opaque_depth;
+
+void main() {
   vec3 origin;
   vec3 direction;
   vec3 normal;
   look(origin, direction);
-  float at = length_to_ball(center, part(ball, 3), origin, direction, normal);
-  vec3 lit = phong(ambient_share * own.rgb, diffuse_share * own.rgb, vec3(0.2), vec3(0.0), 30.0,
-                   origin + at * direction, normalize(normal), -direction);
-  color = vec4(own.a * lit, own.a);
+  float depth = length_to_ball(ball.xyz, ball.w, origin, direction, normal) * reach;
+  ivec2 place = ivec2(gl_FragCoord.xy);
+  float behind = texelFetch(opaque_depth, place, 0).x;
+  if (depth <= 0.0 || depth > behind || (depth == behind && index > texelFetch(opaque_ball, place, 0).x)) discard;
+  uint at = atomicCounterIncrement(used);
+  if (at >= uint(room)) discard;
+  hits[3u * at] = imageAtomicExchange(heads, place, at);
+  hits[3u * at + 1u] = index;
+  hits[3u * at + 2u] = floatBitsToUint(depth);
+}
+)";
+}
+
+std::string list_picture_vertex_shader() {
+  return in_later_version(whole_picture_vertex_shader());
+}
+
+std::string list_shading_shader() {
+  return std::string(later_version) + view_declarations + to_eye_space + sight + phong + ball_parts + ball_hit +
+         shaded_ball + lists + R"(
+uniform float opaque;
+out vec4 color;
+
+// The order of render/cpu/ball_hits.h.
+bool is_before(float depth, uint ball, float other_depth, uint other_ball) {
+  return depth < other_depth || (depth == other_depth && ball < other_ball);
+}
+
+void main() {
+  // Those beside the picture would walk through lists that are none.
+  if (gl_HelperInvocation) return;
+  uint head = imageLoad(heads, ivec2(gl_FragCoord.xy)).x;
+  if (head == none) discard;
+  // In each sweep over the list the nearest so many that are behind those of the sweeps before.
+  const int most = 24;
+  float depths[most];
+  uint balls_met[most];
+  float last_depth = -1.0;
+  uint last_ball = 0u;
+  vec3 sum = vec3(0.0);
+  float left = 1.0;
+  int count = most;
+  while (count == most && left > 1.0 - opaque) {
+    count = 0;
+    for (uint at = head; at != none; at = hits[3u * at]) {
+      uint ball = hits[3u * at + 1u];
+      float depth = uintBitsToFloat(hits[3u * at + 2u]);
+      if (!is_before(last_depth, last_ball, depth, ball)) continue;
+      if (count == most && !is_before(depth, ball, depths[most - 1], balls_met[most - 1])) continue;
+      int i = count < most ? count++ : most - 1;
+      for (; i > 0 && is_before(depth, ball, depths[i - 1], balls_met[i - 1]); --i) {
+        depths[i] = depths[i - 1];
+        balls_met[i] = balls_met[i - 1];
+      }
+      depths[i] = depth;
+      balls_met[i] = ball;
+    }
+    for (int i = 0; i < count && left > 1.0 - opaque; ++i) {
+      vec4 lit = shaded(int(balls_met[i]));
+      sum += left * lit.a * lit.rgb;
+      left *= 1.0 - lit.a;
+    }
+    if (count > 0) {
+      last_depth = depths[count - 1];
+      last_ball = balls_met[count - 1];
+    }
+  }
+  color = vec4(sum, 1.0 - left);
 }
 )";
 }

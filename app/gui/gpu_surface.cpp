@@ -21,7 +21,7 @@ void set_color(vtkShaderProgram& program, const char* name, const Vec3f& color) 
 
 class GpuSurface final : public GpuDrawing {
  public:
-  explicit GpuSurface(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
+  GpuSurface(std::shared_ptr<const Scene> scene, const GpuLimits& limits) : scene_(std::move(scene)), limits_(limits) {}
 
   void draw(vtkOpenGLRenderWindow& window, const GpuView& view, const Parameters& parameters) override {
     if (scene_->surface.empty()) return;
@@ -88,7 +88,7 @@ class GpuSurface final : public GpuDrawing {
       set_attribute(program, "normal", vertex_normals_, 3, sizeof(Vec3f), 0, 0);
     }
     glBindVertexArray(0);
-    const std::size_t most = largest_buffer_texture() / 3;
+    const std::size_t most = std::min(largest_buffer_texture(), limits_.texture_floats) / 3;
     for (std::size_t first = 0; first < scene_->surface.size(); first += most) {
       const std::size_t count = std::min(most, scene_->surface.size() - first);
       Part part;
@@ -101,6 +101,7 @@ class GpuSurface final : public GpuDrawing {
   }
 
   std::shared_ptr<const Scene> scene_;
+  GpuLimits limits_;
   GpuProgram program_{"surfaces", surface_vertex_shader, surface_fragment_shader};
   unsigned attributes_ = 0;
   unsigned positions_ = 0;
@@ -110,8 +111,8 @@ class GpuSurface final : public GpuDrawing {
 
 }  // namespace
 
-std::unique_ptr<GpuDrawing> make_gpu_surface(std::shared_ptr<const Scene> scene) {
-  return std::make_unique<GpuSurface>(std::move(scene));
+std::unique_ptr<GpuDrawing> make_gpu_surface(std::shared_ptr<const Scene> scene, const GpuLimits& limits) {
+  return std::make_unique<GpuSurface>(std::move(scene), limits);
 }
 
 }  // namespace atomesh::gui

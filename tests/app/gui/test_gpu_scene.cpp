@@ -2,156 +2,18 @@
 // pixel, and known answers.
 #include <gtest/gtest.h>
 
-#include <QOffscreenSurface>
-#include <QOpenGLContext>
-#include <QOpenGLExtraFunctions>
-#include <QOpenGLFramebufferObject>
-#include <algorithm>
-#include <cmath>
 #include <functional>
 
-#include "app/gui/gpu_scene.h"
-#include "core/error.h"
-#include "render/renderer.h"
-#include "tests/app/gui/window_test.h"
-#include "tests/render/fixtures.h"
+#include "tests/app/gui/gpu_pictures.h"
 
 namespace atomesh {
 namespace {
 
 using gui::GpuScene;
-
-// A context of OpenGL 3.2, current while it lives, as a widget would have it.
-class Card {
- public:
-  Card() {
-    QSurfaceFormat format;
-    format.setVersion(3, 2);
-    format.setProfile(QSurfaceFormat::CoreProfile);
-    context_.setFormat(format);
-    if (!context_.create()) throw UnavailableError("no context");
-    surface_.setFormat(context_.format());
-    surface_.create();
-    context_.makeCurrent(&surface_);
-  }
-  ~Card() { context_.doneCurrent(); }
-
-  QOpenGLContext& context() { return context_; }
-
-  // What the scene draws, premultiplied.
-  Image draw(GpuScene& gpu, const Camera& camera, const Parameters& parameters) {
-    QOpenGLFramebufferObject target(camera.width, camera.height);
-    target.bind();
-    gpu.draw(camera, parameters);
-    GLint bound = 0;
-    auto& gl = *context_.functions();
-    gl.glGetIntegerv(GL_FRAMEBUFFER_BINDING, &bound);
-    EXPECT_EQ(static_cast<GLuint>(bound), target.handle()) << "the caller's framebuffer is not bound any more";
-    EXPECT_EQ(gl.glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-    std::vector<unsigned char> bytes(static_cast<std::size_t>(4 * camera.width * camera.height));
-    gl.glReadPixels(0, 0, camera.width, camera.height, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
-    Image image(camera.width, camera.height);
-    for (int row = 0; row < image.height; ++row) {
-      for (int column = 0; column < image.width; ++column) {
-        const unsigned char* p =
-            &bytes[static_cast<std::size_t>(4 * ((image.height - 1 - row) * image.width + column))];
-        image.at(column, row) = Vec4f(p[0], p[1], p[2], p[3]) / 255.0F;
-      }
-    }
-    return image;
-  }
-
- private:
-  QOpenGLContext context_;
-  QOffscreenSurface surface_;
-};
-
-#define NEED_A_CARD \
-  if (!test::has_opengl()) GTEST_SKIP() << "no OpenGL 3.2 here"
-
-Image cpu_picture(const Scene& scene, const Camera& camera, const Parameters& parameters) {
-  RenderStats stats;
-  Image image = render(find_renderer("cpu"), scene, camera, parameters, stats);
-  for (Vec4f& pixel : image.pixels) pixel = Vec4f(Vec3f(pixel) * pixel.a, pixel.a);
-  return image;
-}
-
-float difference(const Vec4f& a, const Vec4f& b) {
-  const Vec4f d = glm::abs(a - b);
-  return std::max({d.r, d.g, d.b, d.a});
-}
-
-constexpr float tolerance = 1.5F / 255.0F;  // the rounding to bytes, twice (with a background), and a bit
-
-// Pixels that differ from the CPU's by more than the tolerance; and those of them for which no ray is to blame that
-// passes within `slack` of a pixel of the pixel's centre: what the card shows there lies not even between the colours
-// of such rays.
-struct Disagreement {
-  std::size_t pixels = 0;
-  std::size_t unexplained = 0;
-  std::size_t covered = 0;  // pixels that show something
-  double mean = 0.0;        // absolute difference of a channel
-};
-
-Disagreement disagreement(const Image& gpu, const Scene& scene, const Camera& camera, const Parameters& parameters,
-                          double slack) {
-  const Image cpu = cpu_picture(scene, camera, parameters);
-  Image low = cpu;
-  Image high = cpu;
-  for (const int across : {-1, 0, 1}) {
-    for (const int upward : {-1, 0, 1}) {
-      if (across == 0 && upward == 0) continue;
-      const Image near = cpu_picture(scene, test::nudged(camera, slack * across, slack * upward), parameters);
-      for (std::size_t i = 0; i < near.pixels.size(); ++i) {
-        low.pixels[i] = glm::min(low.pixels[i], near.pixels[i]);
-        high.pixels[i] = glm::max(high.pixels[i], near.pixels[i]);
-      }
-    }
-  }
-  Disagreement found;
-  const Vec4f background(Vec3f(parameters.background) * parameters.background.a, parameters.background.a);
-  for (std::size_t i = 0; i < cpu.pixels.size(); ++i) {
-    const Vec4f& pixel = gpu.pixels[i];
-    found.covered += difference(cpu.pixels[i], background) > 0.0F;
-    for (int k = 0; k < 4; ++k) found.mean += std::abs(pixel[k] - cpu.pixels[i][k]);
-    if (difference(pixel, cpu.pixels[i]) <= tolerance) continue;
-    ++found.pixels;
-    found.unexplained += difference(pixel, glm::clamp(pixel, low.pixels[i], high.pixels[i])) > tolerance;
-  }
-  found.mean /= 4.0 * static_cast<double>(cpu.pixels.size());
-  return found;
-}
-
-// The card snaps vertices to 1/256 of a pixel, so the edges of triangles lie that far off at most. Balls have none:
-// what is left there is the rounding of a float.
-constexpr double surface_slack = 1.0 / 256.0;
-constexpr double ball_slack = 1e-3;
-
-// The pictures agree, and show something.
-void expect_agreement(const Image& gpu, const Scene& scene, const Camera& camera, const Parameters& parameters,
-                      const std::string& what) {
-  const double slack = scene.mode == Mode::surface ? surface_slack : ball_slack;
-  const Disagreement found = disagreement(gpu, scene, camera, parameters, slack);
-  const auto all = static_cast<double>(gpu.pixels.size());
-  ::testing::Test::RecordProperty(what, std::to_string(found.pixels) + " of " + std::to_string(gpu.pixels.size()));
-  EXPECT_EQ(found.unexplained, 0U) << what << ": " << found.pixels << " pixels differ";
-  EXPECT_LE(static_cast<double>(found.pixels), 1e-3 * all) << what;
-  EXPECT_LT(found.mean, 0.3 / 255.0) << what;
-  EXPECT_GT(static_cast<double>(found.covered), 0.1 * all) << what << ": nearly nothing to be seen";
-}
-
-void keep(const Image& image, const std::string& name) {
-  QImage bytes(image.width, image.height, QImage::Format_RGBA8888_Premultiplied);
-  for (int row = 0; row < image.height; ++row) {
-    for (int column = 0; column < image.width; ++column) {
-      for (int k = 0; k < 4; ++k) {
-        bytes.scanLine(row)[4 * column + k] =
-            static_cast<unsigned char>(std::lround(255.0F * std::clamp(image.at(column, row)[k], 0.0F, 1.0F)));
-      }
-    }
-  }
-  test::keep_screenshot(bytes, name);
-}
+using test::Card;
+using test::difference;
+using test::expect_agreement;
+using test::keep;
 
 struct Subject {
   Material material;
@@ -338,6 +200,197 @@ TEST(GpuScene, PicturesAreTheCpusWhateverIsSet) {
     }
   }
   gpu.release();
+}
+
+Parameters see_through(Projection projection = Projection::perspective) {
+  Parameters parameters = test::looking(Mode::atoms, "iso", projection);
+  parameters.atoms.regular_opacity = 0.15;
+  parameters.atoms.regular_limit = 0.97;
+  parameters.atoms.scale = 1.5;
+  return parameters;
+}
+
+// What OpenGL 4.5 does by lists, in bands where they are long, OpenGL 3.2 peels; one picture.
+TEST(GpuScene, TransparentBallsAreComposedOneWayOrAnother) {
+  NEED_A_CARD;
+  Card card;
+  const Parameters parameters = see_through();
+  const Subject subject = subject_of(crystal(), parameters, 160, 120);
+  std::vector<Image> images;
+  const std::vector<std::pair<std::string, gui::GpuLimits>> ways{
+      {"lists", {}},
+      {"lists in bands", {.list_bytes = 12 * 8000}},
+      {"lists that have no room for a row", {.list_bytes = 12 * 100}},
+      {"peeled", {.lists = false}},
+      {"peeled, in parts", {.texture_floats = 9 * 50}},
+  };
+  for (const auto& [name, limits] : ways) {
+    GpuScene gpu(limits);
+    gpu.set_scene(subject.scene);
+    images.push_back(card.draw(gpu, subject.camera, parameters));
+    expect_agreement(images.back(), *subject.scene, subject.camera, parameters, name);
+    // A second time everything is there already, and bands have found their height.
+    EXPECT_EQ(card.draw(gpu, subject.camera, parameters).pixels, images.back().pixels) << name;
+    gpu.release();
+  }
+  keep(images.back(), "gpu transparent");
+}
+
+// Balls in one place, and balls that cut each other halfway between two pixels' rays: whoever comes first in the scene
+// is in front, as in render/cpu/ball_hits.h.
+TEST(GpuScene, BallsOfOneDepthAreInTheirOrder) {
+  NEED_A_CARD;
+  Card card;
+  for (const double opacity : {1.0, 0.5}) {
+    Parameters parameters = test::looking(Mode::atoms, "front", Projection::parallel);
+    parameters.atoms.regular_opacity = opacity;
+    parameters.atoms.colors = {{"A", {1, 0, 0}}, {"B", {0, 0, 1}}, {"C", {0, 1, 0}}};
+    parameters.atoms.radii = {{"A", 2.0}, {"B", 2.0}, {"C", 2.0}};
+    const Material material = test::atoms_material({{"A", {0, 0, 0}},
+                                                    {"B", {0, 0, 0}},
+                                                    {"C", {0, 0, 0}},
+                                                    {"B", {6, 0, 0}},
+                                                    {"A", {6, 0, 0}},
+                                                    {"C", {2, 0, 5}},
+                                                    {"A", {4, 0, 5}}});
+    const Subject subject = subject_of(material, parameters, 101, 101);
+    for (const bool lists : {true, false}) {
+      GpuScene gpu({.lists = lists});
+      gpu.set_scene(subject.scene);
+      const Image image = card.draw(gpu, subject.camera, parameters);
+      keep(image, "gpu ties");
+      expect_agreement(image, *subject.scene, subject.camera, parameters, lists ? "lists" : "peeled");
+      gpu.release();
+    }
+  }
+}
+
+TEST(GpuScene, SpeciesAreHiddenColouredAndSized) {
+  NEED_A_CARD;
+  Card card;
+  std::vector<std::pair<std::string, Vec3>> atoms;
+  for (int i = 0; i < 60; ++i) {
+    atoms.push_back({i % 3 == 0 ? "Na" : i % 3 == 1 ? "Cl" : "Cs", Vec3(i % 5, (i / 5) % 4, i / 20) * 2.5});
+  }
+  Parameters parameters = test::looking(Mode::atoms, "iso", Projection::perspective);
+  parameters.atoms.visible["Cl"] = false;
+  parameters.atoms.colors["Cs"] = {0.9F, 0.4F, 0.0F};
+  parameters.atoms.radii["Na"] = 0.6;
+  const Subject subject = subject_of(test::atoms_material(atoms), parameters, 160, 160);
+  ASSERT_EQ(subject.scene->balls.size(), 40U);
+  GpuScene gpu;
+  gpu.set_scene(subject.scene);
+  const Image image = card.draw(gpu, subject.camera, parameters);
+  keep(image, "gpu species");
+  expect_agreement(image, *subject.scene, subject.camera, parameters, "species");
+  gpu.release();
+}
+
+TEST(GpuScene, ScenesThatDoNotFitOneTextureAreDrawnInParts) {
+  NEED_A_CARD;
+  Card card;
+  GpuScene gpu({.texture_floats = 9 * 33});
+  for (const Mode mode : {Mode::surface, Mode::atoms}) {
+    Parameters parameters = test::looking(mode, "iso", Projection::perspective);
+    parameters.shading = Shading::flat;
+    const Subject subject = subject_of(crystal(), parameters, 160, 120);
+    gpu.set_scene(subject.scene);
+    expect_agreement(card.draw(gpu, subject.camera, parameters), *subject.scene, subject.camera, parameters, "parts");
+  }
+  gpu.release();
+}
+
+TEST(GpuScene, RaysOfAPixelAreAveraged) {
+  NEED_A_CARD;
+  Card card;
+  GpuScene gpu;
+  for (const Mode mode : {Mode::surface, Mode::atoms}) {
+    for (const int n : {2, 3}) {
+      Parameters parameters = test::looking(mode, "iso", Projection::perspective);
+      parameters.supersampling = n;
+      parameters.background = {1.0F / 3.0F, 2.0F / 3.0F, 1.0F, 0.6F};  // whole bytes
+      const Subject subject = subject_of(crystal(), parameters, 121, 90);
+      gpu.set_scene(subject.scene);
+      const Image image = card.draw(gpu, subject.camera, parameters);
+      keep(image, "gpu supersampled");
+      expect_agreement(image, *subject.scene, subject.camera, parameters, "supersampling " + std::to_string(n));
+    }
+  }
+  gpu.release();
+}
+
+TEST(GpuScene, SizesScenesAndContextsChange) {
+  NEED_A_CARD;
+  const Parameters opaque = test::looking(Mode::atoms, "iso", Projection::perspective);
+  const Parameters transparent = see_through(Projection::parallel);
+  const Parameters surface = test::looking(Mode::surface, "iso", Projection::perspective);
+  const Material material = crystal();
+  GpuScene gpu;
+  for (int round = 0; round < 2; ++round) {
+    Card card;  // another context each time
+    for (const Parameters& parameters : {opaque, transparent, surface, opaque}) {
+      for (const auto& [width, height] : {std::pair(90, 120), std::pair(200, 64), std::pair(1, 1)}) {
+        const Subject subject = subject_of(material, parameters, width, height);
+        gpu.set_scene(subject.scene);
+        gpu.set_scene(subject.scene);
+        const Image image = card.draw(gpu, subject.camera, parameters);
+        if (width == 1) continue;
+        expect_agreement(image, *subject.scene, subject.camera, parameters, "size");
+        // Turned, nothing is uploaded again.
+        Parameters turned = parameters;
+        turned.azimuth += 40.0;
+        const Camera camera = make_camera(turned, subject.scene->bounds, height, width);
+        expect_agreement(card.draw(gpu, camera, turned), *subject.scene, camera, turned, "turned");
+      }
+    }
+    gpu.release();
+    if (round == 0) {
+      // The scene is still the last one's, in the same context once more.
+      const Subject subject = subject_of(material, opaque, 90, 120);
+      expect_agreement(card.draw(gpu, subject.camera, opaque), *subject.scene, subject.camera, opaque, "again");
+      gpu.release();
+    }
+  }
+}
+
+TEST(GpuScene, WithoutASceneThereIsTheBackground) {
+  NEED_A_CARD;
+  Card card;
+  GpuScene gpu;
+  Parameters parameters;
+  parameters.background = {0.2F, 0.4F, 0.6F, 0.5F};
+  const Camera camera = make_camera(parameters, {}, 20, 10);
+  const auto expect_background = [&](const Image& image) {
+    for (const Vec4f& pixel : image.pixels) EXPECT_LE(difference(pixel, {0.1F, 0.2F, 0.3F, 0.5F}), 0.6F / 255.0F);
+  };
+  expect_background(card.draw(gpu, camera, parameters));
+  for (const Mode mode : {Mode::surface, Mode::atoms}) {
+    auto empty = std::make_shared<Scene>();
+    empty->mode = mode;
+    gpu.set_scene(empty);
+    expect_background(card.draw(gpu, camera, parameters));
+  }
+  gpu.set_scene(nullptr);
+  expect_background(card.draw(gpu, camera, parameters));
+  auto volume = std::make_shared<Scene>();
+  volume->mode = Mode::volume;
+  EXPECT_THROW(gpu.set_scene(volume), UsageError);
+  EXPECT_THROW(gpu.draw(make_camera(parameters, {}, 0, 10), parameters), UsageError);
+  gpu.release();
+}
+
+TEST(GpuInfo, SaysWhatTheContextIs) {
+  NEED_A_CARD;
+  Card card;
+  const gui::GpuInfo info = gui::gpu_info([&](const char* name) {
+    // NOLINTNEXTLINE: as OpenGL has it
+    return reinterpret_cast<void*>(card.context().getProcAddress(name));
+  });
+  EXPECT_FALSE(info.renderer.empty());
+  EXPECT_TRUE(info.sufficient) << info.version;
+  if (info.renderer.find("llvmpipe") != std::string::npos) {
+    EXPECT_TRUE(info.software);
+  }
 }
 
 }  // namespace
