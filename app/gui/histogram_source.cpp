@@ -15,6 +15,12 @@ HistogramSource::HistogramSource(Workspace& workspace, QObject* parent) : QObjec
   });
   connect(&workspace, &Workspace::parts_changed, this, &HistogramSource::follow);
   connect(&workspace, &Workspace::parameters_changed, this, &HistogramSource::follow);
+  // Of parts that cannot be read nothing else tells.
+  connect(&workspace, &Workspace::complained, this, [this](const QString& message) {
+    if (!wanted_ || histogram_ || job_.running() || !workspace_.document()) return;
+    trouble_ = message;
+    emit changed();
+  });
 }
 
 void HistogramSource::set_wanted(bool wanted) {

@@ -26,7 +26,7 @@ void LatestJob::cancel() {
 
 void LatestJob::start() {
   superseded_ = false;
-  job_ = std::make_unique<Job>(current_->title, current_->work);
+  job_ = std::make_unique<Job>(current_->title, current_->work, nullptr, Job::Unheeded::leave);
   connect(job_.get(), &Job::done, this, [this] {
     if (const auto request = end()) request->done();
   });

@@ -11,8 +11,8 @@
 
 namespace atomesh::gui {
 
-// On the window's thread. run() while a job runs cancels it, and begins when it has ended: the window never waits.
-// Deleting it waits for the job to notice that it is cancelled.
+// On the window's thread. run() while a job runs cancels it, and begins when it has ended: the window never waits. The
+// work must own all it touches (Job::Unheeded::leave).
 class LatestJob : public QObject {
  public:
   explicit LatestJob(QObject* parent = nullptr);
