@@ -10,7 +10,7 @@ namespace atomesh {
 
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string result = "\"";
   for (const char c : text) {
@@ -116,18 +116,19 @@ class CrtWriter {
     text += "# A material: atoms, their volume as tetrahedra, its surface, and crystal defects. Lengths in Å.\n\n";
     Line line(text);
     const Provenance& provenance = m_.provenance;
-    line.word("program").word(quoted(provenance.program)).end();
-    line.word("input").word(quoted(provenance.input)).end();
+    line.word("program").word(in_quotes(provenance.program)).end();
+    line.word("input").word(in_quotes(provenance.input)).end();
     for (const auto& [name, value] : provenance.options) {
-      line.word("option").word(quoted(name)).word(quoted(value)).end();
+      line.word("option").word(in_quotes(name)).word(in_quotes(value)).end();
     }
-    for (const auto& [name, value] : provenance.counts) line.word("count").word(quoted(name)).number(value).end();
+    for (const auto& [name, value] : provenance.counts) line.word("count").word(in_quotes(name)).number(value).end();
     for (const StageTime& stage : provenance.stages) {
-      line.word("stage").word(quoted(stage.name)).number(stage.ms).end();
+      line.word("stage").word(in_quotes(stage.name)).number(stage.ms).end();
     }
     text += "\n# name, radius\n";
     line.word("species").number(m_.atoms.species_table.size()).end();
-    for (const Species& species : m_.atoms.species_table) line.word(quoted(species.name)).number(species.radius).end();
+    for (const Species& species : m_.atoms.species_table)
+      line.word(in_quotes(species.name)).number(species.radius).end();
     text += '\n';
     const Box& box = m_.atoms.box;
     line.word("box").end();
@@ -152,7 +153,7 @@ class CrtWriter {
     if (!atoms.columns.empty()) {
       text += '\n';
       line.word("columns").number(atoms.columns.size()).end();
-      for (const Column& column : atoms.columns) line.word(quoted(column.name)).end();
+      for (const Column& column : atoms.columns) line.word(in_quotes(column.name)).end();
     }
     const bool ids = !atoms.ids.empty();
     text += "\n# x y z species";
@@ -255,7 +256,7 @@ class CrtWriter {
     std::string text = "# names, then a line for each vertex\n";
     Line line(text);
     line.word("fields").number(m_.fields.size()).end();
-    for (const VertexField& field : m_.fields) line.word(quoted(field.name)).end();
+    for (const VertexField& field : m_.fields) line.word(in_quotes(field.name)).end();
     file_.write(text);
     write_lines(m_.mesh.vertices.size(), [&](std::size_t v, Line& l) {
       for (const VertexField& field : m_.fields) l.number(field.values[v]);
