@@ -53,15 +53,21 @@ class DrawingProp final : public vtkProp {
   }
 };
 
-// VTK's window in a context that is current whenever we are called.
+// VTK's window in a context that is current whenever we are called, and that need not come through GLX: with EGL (as on
+// Wayland) GLEW has found OpenGL's functions when it fails at GLX's.
 class ForeignWindow final : public vtkGenericOpenGLRenderWindow {
  public:
   static ForeignWindow* New() { VTK_STANDARD_NEW_BODY(ForeignWindow); }
   vtkTypeMacro(ForeignWindow, vtkGenericOpenGLRenderWindow)
 
-      bool functions_loaded() const {
-    return GlewInitValid;
+      void OpenGLInitContext() override {
+    if (Initialized) return;
+    ContextCreationTime.Modified();
+    const GLenum result = glewInit();
+    GlewInitValid = (result == GLEW_OK || result == GLEW_ERROR_NO_GLX_DISPLAY) && GLEW_VERSION_3_2 != 0;
+    Initialized = GlewInitValid;
   }
+  bool functions_loaded() const { return GlewInitValid; }
 };
 
 void answer(vtkObject*, unsigned long event, void*, void* asked) {
@@ -147,7 +153,7 @@ class GpuScene::Pipeline {
     window_->OpenGLInit();
     if (!window_->functions_loaded()) {
       window_ = nullptr;
-      throw UnavailableError("VTK finds no functions of OpenGL here (it needs GLX, not EGL)");
+      throw UnavailableError("there is no OpenGL 3.2 here, or none whose functions are found");
     }
     renderer_ = vtkSmartPointer<vtkRenderer>::New();
     prop_ = vtkSmartPointer<DrawingProp>::New();

@@ -23,7 +23,7 @@ struct GpuLimits {
 // Draws the same pictures as render() does in modes surface and atoms: camera, lights, cut planes, background, colours,
 // opacities, supersampling; a test compares them. On the card lie 36 bytes a ball, or 24 a vertex and 24 a triangle; a
 // view that changes sends nothing but a few numbers. All calls with the context current, which has OpenGL 3.2 (core) or
-// later and, VTK's condition, came through GLX or WGL (not EGL).
+// later; whether it came through GLX or EGL does not matter.
 class GpuScene {
  public:
   explicit GpuScene(const GpuLimits& limits = {});

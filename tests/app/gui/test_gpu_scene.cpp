@@ -2,6 +2,8 @@
 // pixel, and known answers.
 #include <gtest/gtest.h>
 
+#include <QOpenGLWidget>
+#include <QPainter>
 #include <functional>
 
 #include "tests/app/gui/gpu_pictures.h"
@@ -349,6 +351,49 @@ TEST(GpuScene, SizesScenesAndContextsChange) {
       const Subject subject = subject_of(material, opaque, 90, 120);
       expect_agreement(card.draw(gpu, subject.camera, opaque), *subject.scene, subject.camera, opaque, "again");
       gpu.release();
+    }
+  }
+}
+
+// Draws the scene, and with Qt's painter over it.
+class PaintedView final : public QOpenGLWidget {
+ public:
+  explicit PaintedView(const Subject& subject) : subject_(subject) { gpu_.set_scene(subject.scene); }
+  ~PaintedView() override {
+    makeCurrent();
+    gpu_.release();
+    doneCurrent();
+  }
+
+ private:
+  void paintGL() override {
+    gpu_.draw(subject_.camera, subject_.parameters);
+    QPainter painter(this);
+    painter.fillRect(QRect(10, 20, 30, 40), Qt::red);
+    painter.setOpacity(0.0);
+    painter.drawText(QPoint(5, 15), "0");
+  }
+
+  const Subject& subject_;
+  GpuScene gpu_;
+};
+
+// Neither leaves anything behind that the other stumbles over.
+TEST(GpuScene, QtPaintsOverIt) {
+  NEED_A_CARD;
+  for (const Parameters& parameters : {see_through(), test::looking(Mode::surface, "iso", Projection::perspective)}) {
+    const Subject subject = subject_of(crystal(), parameters, 200, 150);
+    PaintedView view(subject);
+    view.resize(200, 150);
+    test::show(view);
+    Image expected = test::cpu_picture(*subject.scene, subject.camera, parameters);
+    for (int row = 20; row < 60; ++row) {
+      for (int column = 10; column < 40; ++column) expected.at(column, row) = {1, 0, 0, 1};
+    }
+    for (int frame = 0; frame < 3; ++frame) {
+      const Image image = test::to_image(view.grabFramebuffer());
+      ASSERT_EQ(image.width, 200);
+      EXPECT_EQ(compare_images(image, expected, test::tolerance).pixels_over, 0U) << "frame " << frame;
     }
   }
 }
