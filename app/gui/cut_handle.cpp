@@ -204,15 +204,15 @@ CutPlane tilted_plane(const CutPlane& plane, const CutHandle& handle, const Boun
 }
 
 void draw_cut_handles(Image& image, int first_row, const Camera& camera, const Vec4f& background,
-                      const std::vector<CutHandle>& handles, std::optional<std::size_t> hot) {
+                      const std::vector<CutHandle>& handles, std::optional<std::size_t> hot_plane) {
   Canvas canvas(image, first_row);
   const double size = overlay_text_size(camera.width, camera.height);
   const Vec4f paper = overlay_colors(background).paper;
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const CutHandle& handle = handles[i];
-    const Vec4f color = hot == i ? hot_color : plane_color;
+    const Vec4f color = hot_plane == handle.plane ? hot_color : plane_color;
     const double thin = std::max(1.0, 0.09 * size);
-    const double thick = std::max(2.0, (hot == i ? 0.28 : 0.2) * size);
+    const double thick = std::max(2.0, (hot_plane == handle.plane ? 0.28 : 0.2) * size);
     const double rim = std::max(1.0, 0.07 * size);
     for (const bool outer : {true, false}) {
       for (std::size_t k = 0; k < handle.outline.size(); ++k) {

@@ -34,9 +34,9 @@ CutPlane moved_plane(const CutPlane& plane, const CutHandle& handle, const Bound
 CutPlane tilted_plane(const CutPlane& plane, const CutHandle& handle, const Bounds& bounds, const Camera& camera,
                       const glm::dvec2& from, const glm::dvec2& to);
 
-// Outlines and arrows, over `image` as draw_overlay() has it; `hot` is the handle under the mouse, or the one that is
-// dragged.
+// Outlines and arrows, over `image` as draw_overlay() has it. `hot_plane` (CutHandle::plane) is the one whose handle is
+// under the mouse, or dragged.
 void draw_cut_handles(Image& image, int first_row, const Camera& camera, const Vec4f& background,
-                      const std::vector<CutHandle>& handles, std::optional<std::size_t> hot = std::nullopt);
+                      const std::vector<CutHandle>& handles, std::optional<std::size_t> hot_plane = std::nullopt);
 
 }  // namespace atomesh::gui

@@ -169,11 +169,11 @@ TEST(CutHandle, DrawsInBandsAndWithPartsBehindTheEye) {
     const Camera camera = camera_of(parameters);
     const auto handles = cut_handles(parameters, box(), camera);
     Image whole(600, 500);
-    draw_cut_handles(whole, 0, camera, Vec4f(1.0F), handles, 1);
+    draw_cut_handles(whole, 0, camera, Vec4f(1.0F), handles, 3);
     Image together(600, 500);
     for (int first = 0; first < 500; first += 77) {
       Image band(600, std::min(77, 500 - first));
-      draw_cut_handles(band, first, camera, Vec4f(1.0F), handles, 1);
+      draw_cut_handles(band, first, camera, Vec4f(1.0F), handles, 3);
       std::copy(band.pixels.begin(), band.pixels.end(), together.pixels.begin() + 600 * first);
     }
     EXPECT_EQ(whole.pixels, together.pixels);
