@@ -172,6 +172,12 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   }
 }
 
+std::string AtomicFile::place() const {
+  if (temporary_.empty()) return path_;
+  if (named_) return temporary_;
+  return "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(::fileno(file_));
+}
+
 void AtomicFile::commit() {
   bool flushed = std::ferror(file_) == 0 && std::fflush(file_) == 0;
   if (flushed && !temporary_.empty() && !named_) {

@@ -65,8 +65,9 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
   std::FILE* stream() { return file_; }
-  // What the file is called until commit(), for a library that writes by name.
-  const std::string& place() const { return temporary_.empty() ? path_ : temporary_; }
+  // A name by which the file can be opened until commit(), by this process and those it starts: for a library or
+  // program that writes by name.
+  std::string place() const;
   void commit();
 
  private:

@@ -142,7 +142,9 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
       draw_picture({renderer, loaded.material, scene, camera, parameters, arguments.output,
                     picture_text(arguments.output, arguments.input, hash_of_data(arguments.input, session.progress()),
                                  loaded.material, parameters, renderer.name(),
-                                 {.legend = arguments.legend.legend, .scale_bar = arguments.legend.scale_bar})},
+                                 {.legend = arguments.legend.legend,
+                                  .scale_bar = arguments.legend.scale_bar,
+                                  .tripod = arguments.legend.tripod})},
                    arguments.picture, channel_files, legend, session);
   const RenderStats& stats = drawn.stats;
   const double total_ms = elapsed_since(start);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/gui/overlay.h"
 #include "core/error.h"
 #include "core/memory.h"
-#include "render/legend_drawing.h"
 #include "render/passes.h"
 
 namespace atomesh::gui {
@@ -34,29 +34,19 @@ Camera size_only(const PictureSettings& settings) {
   return camera;
 }
 
-// What is drawn over the pixels, laid out once for all bands.
-class Overlay {
- public:
-  Overlay(const PictureStudio& studio, const Camera& camera, double thickest) {
-    const PictureSettings& settings = studio.settings();
-    const Material& material = *studio.document().material;
-    std::optional<Legend> legend;
-    if (settings.parts.legend) legend = make_legend(studio.scene(), material, studio.parameters(), thickest);
-    std::optional<ScaleBar> bar;
-    if (settings.parts.scale_bar) {
-      bar = make_scale_bar(camera, studio.scene().bounds.center(), studio.document().angstroms());
-    }
-    drawing_.emplace(camera.width, camera.height, studio.parameters().background, legend, bar);
-  }
-
-  void draw(Image& band, int first_row) const {
-    Canvas canvas(band, first_row);
-    drawing_->draw(canvas);
-  }
-
- private:
-  std::optional<LegendDrawing> drawing_;
-};
+// What lies over the sample.
+OverlayParts overlay_of(const PictureStudio& studio, const Camera& camera, double thickest) {
+  const PictureSettings& settings = studio.settings();
+  const Material& material = *studio.document().material;
+  ViewOptions options;
+  options.legend = settings.parts.legend;
+  options.scale_bar = settings.parts.scale_bar;
+  options.tripod = settings.parts.tripod;
+  OverlayParts parts =
+      overlay_parts(options, studio.scene(), material, studio.parameters(), camera, thickest, settings.marks);
+  add_picks(parts, settings.picks, material, studio.parameters());
+  return parts;
+}
 
 double largest(const std::vector<float>& values) {
   return values.empty() ? 0.0 : static_cast<double>(*std::max_element(values.begin(), values.end()));
@@ -123,7 +113,8 @@ Image PictureStudio::draw(const Parameters& view, std::optional<double> thickest
                  pass_bytes(from, view, channels, from.height), "take a smaller size, or save the picture to a file");
   RenderStats stats;
   Image image = render(renderer_, scene_, from, view, stats, channels, progress);
-  Overlay(*this, from, thickest.value_or(largest(thickness))).draw(image, 0);
+  draw_overlay(image, 0, from, *document_.material, view.background,
+               overlay_of(*this, from, thickest.value_or(largest(thickness))));
   return image;
 }
 
@@ -143,19 +134,22 @@ PicturePlan PictureStudio::save(const std::string& png, const Parameters& view, 
       thickest = largest_thickness(view, progress);
     }
   }
-  std::optional<Overlay> overlay;
-  PngWriter writer(
-      png, from.width, from.height, view.background.a == 1.0F,
-      cli::picture_text(png, document_.path, data_hash_, *document_.material, view, renderer_.name(), settings_.parts));
+  std::optional<OverlayParts> overlay;
+  PngWriter writer(png, from.width, from.height, view.background.a == 1.0F, text(png, view));
   RenderStats stats;
   const BandSink write = [&](Image& band, int first_row) {
-    if (!overlay) overlay.emplace(*this, from, thickest.value_or(largest(thickness)));
-    overlay->draw(band, first_row);
+    if (!overlay) overlay = overlay_of(*this, from, thickest.value_or(largest(thickness)));
+    draw_overlay(band, first_row, from, *document_.material, view.background, *overlay);
     writer.write_rows(band.pixels, progress);
   };
   render_in_passes(renderer_, scene_, from, view, plan.rows, stats, channels, write, progress);
   writer.finish();
   return plan;
+}
+
+PngText PictureStudio::text(const std::string& png, const Parameters& view) const {
+  return cli::picture_text(png, document_.path, data_hash_, *document_.material, view, renderer_.name(),
+                           settings_.parts);
 }
 
 PicturePlan save_picture(const std::string& png, const Document& document, const Parameters& parameters,

@@ -24,9 +24,9 @@ struct PictureSettings {
   bool transparent = false;  // background; else that of the parameters
   int supersampling = 0;     // n × n rays a pixel; 0: as the parameters say
   cli::PictureParts parts{};
-  std::vector<Mark> marks{};      // drawn into the picture
+  std::vector<Mark> marks{};  // drawn into the picture, as are these with what was measured between them
+  std::vector<Pick> picks{};
   std::string renderer = "auto";  // find_renderer()
-  bool operator==(const PictureSettings&) const = default;
 };
 
 // The parameters by which the picture is drawn, and which its file carries.
@@ -65,6 +65,8 @@ class PictureStudio {
   // Into a PNG, in passes that fit the memory. Nothing is left of one that is cancelled or fails. Returns the passes.
   PicturePlan save(const std::string& png, const Parameters& view, std::optional<double> thickest,
                    Progress& progress) const;
+  // What a PNG of this view says of itself.
+  PngText text(const std::string& png, const Parameters& view) const;
 
  private:
   Document document_;  // keeps what the scene borrows

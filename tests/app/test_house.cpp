@@ -66,8 +66,9 @@ const std::vector<HeavyLibrary>& heavy_libraries() {
       {"spglib", std::regex("^spglib\\.h$"), {"preprocess"}},
       {"Embree", std::regex("^embree[0-9]/"), {"render"}},
       {"FreeType", std::regex("^(ft2build\\.h$|freetype/)"), {"render"}},
-      // three files of readers, a writer, two peers of the benches; six of the window's scene on the graphics card
-      {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 12},
+      // three files of readers, a writer, two peers of the benches; six of the window's scene on the graphics card; a
+      // writer of movies
+      {"VTK", std::regex("^vtk[A-Z]"), {"app"}, 13},
       {"toml++", std::regex("^toml(\\+\\+|plusplus|/|\\.)"), {"core"}},
       {"nlohmann-json", std::regex("^nlohmann/"), {"app"}},
       {"Qt", std::regex("^(Q[A-Z]|Qt)"), {"app"}, 0, "app/gui/"},

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "core/error.h"
@@ -141,6 +142,18 @@ TEST(AtomicFile, HasNoNameBeforeTheCommitWhereTheFileSystemCan) {
   const mode_t mask = ::umask(0);
   ::umask(mask);
   EXPECT_EQ(now.st_mode & 0777U, 0666U & ~mask);  // as any other new file
+}
+
+TEST(AtomicFile, CanBeWrittenByName) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder.file("a"));
+  write_bytes(file.place(), "by this process");
+  EXPECT_EQ(read_bytes(file.place()), "by this process");
+  ASSERT_EQ(std::system(("echo and another >> " + file.place()).c_str()), 0);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a")));
+  file.commit();
+  EXPECT_EQ(read_bytes(folder.file("a")), "by this processand another\n");
+  EXPECT_EQ(folder.count(), 1U);
 }
 
 TEST(AtomicFile, FollowsLinksAndWritesThroughDevices) {

@@ -41,16 +41,17 @@ TEST_F(SavePicture, IsTheCommandLinesToTheLastByte) {
   }
 }
 
-TEST_F(SavePicture, WithLegendAndScaleBarToo) {
+TEST_F(SavePicture, WithLegendScaleBarAndTripodToo) {
   const Document document = open();
   for (const std::string& mode : modes) {
     Parameters parameters;
     parameters.mode = mode_from_name(mode);
-    save_picture(path("window.png"), document, parameters,
-                 {.width = 320, .height = 240, .supersampling = 2, .parts = {.legend = true, .scale_bar = true}},
-                 no_progress());
-    cli({"render", "d.crb", "-o", "cli.png", "--mode", mode, "--size", "320x240", "--legend", "--scale-bar", "--set",
-         "quality.supersampling=2"});
+    save_picture(
+        path("window.png"), document, parameters,
+        {.width = 320, .height = 240, .supersampling = 2, .parts = {.legend = true, .scale_bar = true, .tripod = true}},
+        no_progress());
+    cli({"render", "d.crb", "-o", "cli.png", "--mode", mode, "--size", "320x240", "--legend", "--scale-bar", "--tripod",
+         "--set", "quality.supersampling=2"});
     EXPECT_EQ(place->read("window.png"), place->read("cli.png")) << mode;
     cli({"render", "d.crb", "-o", "bare.png", "--mode", mode, "--size", "320x240", "--set", "quality.supersampling=2"});
     EXPECT_NE(read_png(path("window.png")).pixels, read_png(path("bare.png")).pixels) << mode;
@@ -86,6 +87,23 @@ TEST_F(SavePicture, TransparentIsNothingButTheSample) {
   const PictureStudio studio(document, parameters, settings, no_progress());
   const Image drawn = studio.draw(studio.parameters(), std::nullopt, no_progress());
   EXPECT_LE(compare_images(drawn, clear).max, 0.5 / 255.0 + 1e-6);
+}
+
+TEST_F(SavePicture, MarksAndPicksAreInIt) {
+  const Document document = open();
+  Parameters parameters;
+  parameters.mode = Mode::surface;
+  PictureSettings settings{.width = 160, .height = 120};
+  const auto drawn = [&] {
+    const PictureStudio studio(document, parameters, settings, no_progress());
+    return studio.draw(studio.parameters(), std::nullopt, no_progress());
+  };
+  const Image bare = drawn();
+  settings.marks = {{.position = document.material->atoms.positions[10], .radius = 3.0, .text = "here"}};
+  const Image marked = drawn();
+  EXPECT_GT(compare_images(bare, marked).pixels_over, 50U);
+  settings.picks = {pick_atom(*document.material, 0), pick_atom(*document.material, 500)};
+  EXPECT_GT(compare_images(marked, drawn()).pixels_over, 50U);
 }
 
 TEST_F(SavePicture, CancelledLeavesNothing) {
