@@ -1,6 +1,7 @@
 // The dock of the rendering parameters: pages of the modes, auto apply, species, parameter files, search.
 #include <gtest/gtest.h>
 
+#include <QApplication>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QElapsedTimer>
@@ -13,7 +14,9 @@
 #include <QTest>
 #include <QToolButton>
 
+#include "app/gui/display_options.h"
 #include "app/gui/number_box.h"
+#include "app/gui/numbered_parts.h"
 #include "app/gui/parameter_field.h"
 #include "app/gui/parameter_hints.h"
 #include "app/gui/rendering_parameters.h"
@@ -27,6 +30,12 @@ namespace atomesh::gui {
 namespace {
 
 using test::child;
+
+void set_light_count_of(Workspace& workspace, int count) {
+  Parameters parameters = workspace.parameters();
+  set_light_count(parameters, count);
+  workspace.change(parameters, "lights");
+}
 
 class Dock : public testing::Test {
  protected:
@@ -227,6 +236,44 @@ TEST_F(Dock, AModeIsResetAlone) {
   EXPECT_EQ(workspace_.parameters().xray.alpha_length, 0.5);
   workspace_.undo();
   EXPECT_EQ(workspace_.parameters().atoms.scale, 0.5);
+}
+
+// A drag of the view changes parameters at every event, which both docks follow.
+TEST_F(Dock, FollowingADragIsCheap) {
+  DisplayOptions options(workspace_, nullptr);
+  set_light_count_of(workspace_, 8);
+  part<QLineEdit>("parameter_search").setText("color");  // and the rows of a search
+  test::show(options);
+  QElapsedTimer watch;
+  watch.start();
+  constexpr int steps = 100;
+  for (int step = 0; step < steps; ++step) {
+    Parameters parameters = workspace_.parameters();
+    parameters.azimuth = step;
+    workspace_.change(parameters, "turn", "view");
+    QCoreApplication::processEvents();
+  }
+  const double ms = static_cast<double>(watch.nsecsElapsed()) * 1e-6 / steps;
+  std::printf("a change of the view: %.2f ms\n", ms);
+  EXPECT_LT(ms, 50.0);  // the bound for any event, sanitizers included
+}
+
+TEST_F(Dock, ALargeFontFits) {
+  const QFont usual = QApplication::font();
+  QFont large = usual;
+  large.setPointSizeF(2.0 * usual.pointSizeF());
+  QApplication::setFont(large);
+  RenderingParameters dock(workspace_, nullptr);
+  dock.resize(840, 1400);
+  test::show(dock);
+  workspace_.set("mode", "volume-surface");
+  QCoreApplication::processEvents();
+  test::keep_screenshot(dock.grab().toImage(), "rendering_parameters_large_font");
+  for (const QWidget* widget : dock.findChildren<QWidget*>()) {
+    if (!widget->isVisible()) continue;
+    EXPECT_LE(widget->mapTo(&dock, QPoint(widget->width(), 0)).x(), dock.width()) << widget->objectName().toStdString();
+  }
+  QApplication::setFont(usual);
 }
 
 TEST_F(Dock, LooksRightInEveryMode) {
