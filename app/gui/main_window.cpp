@@ -3,22 +3,19 @@
 #include <fmt/format.h>
 
 #include <QCloseEvent>
-#include <QDockWidget>
 #include <QFileInfo>
 #include <QLabel>
 #include <QMessageBox>
 #include <QProgressBar>
 #include <QSettings>
-#include <QStackedWidget>
 #include <QStatusBar>
+#include <QToolButton>
 #include <utility>
 
 #include "app/gui/job.h"
-#include "app/gui/material_panel.h"
 #include "app/gui/render_worker.h"
 #include "app/gui/viewport.h"
 #include "core/error.h"
-#include "core/parameter_file.h"
 
 namespace atomesh::gui {
 
@@ -72,30 +69,6 @@ MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
 
 MainWindow::~MainWindow() = default;
 
-void MainWindow::build_pages() {
-  pages_ = new QStackedWidget(this);
-  pages_->setObjectName("pages");
-  viewport_ = new Viewport(workspace_, pages_);
-  pages_->addWidget(viewport_);
-  setCentralWidget(pages_);
-}
-
-QDockWidget* MainWindow::add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area) {
-  auto* dock = new QDockWidget(title, this);
-  dock->setObjectName(content->objectName() + "_dock");
-  dock->setWidget(content);
-  addDockWidget(area, dock);
-  docks_.push_back(dock);
-  return dock;
-}
-
-void MainWindow::build_docks() {
-  setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
-  setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
-  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  add_dock(new MaterialPanel(workspace_), tr("Material"), Qt::LeftDockWidgetArea);
-}
-
 void MainWindow::build_status_line() {
   hint_ = new QLabel(this);
   hint_->setObjectName("hint");
@@ -109,7 +82,12 @@ void MainWindow::build_status_line() {
   frame_ = new QLabel(this);
   frame_->setObjectName("frame");
   statusBar()->addWidget(hint_, 1);
+  cancel_ = new QToolButton(this);
+  cancel_->setObjectName("cancel_job");
+  cancel_->setText(tr("Cancel"));
+  cancel_->hide();
   statusBar()->addPermanentWidget(progress_);
+  statusBar()->addPermanentWidget(cancel_);
   statusBar()->addPermanentWidget(counts_);
   statusBar()->addPermanentWidget(frame_);
 }
@@ -131,9 +109,14 @@ void MainWindow::follow(Job* job) {
   progress_->setFormat(job->title() + " %p %");
   progress_->setValue(0);
   progress_->show();
+  cancel_->show();
+  connect(cancel_, &QToolButton::clicked, job, &Job::cancel);
   connect(job, &Job::progressed, this,
           [this](const QString&, double fraction) { progress_->setValue(static_cast<int>(1000.0 * fraction)); });
-  const auto ended = [this] { progress_->hide(); };
+  const auto ended = [this] {
+    progress_->hide();
+    cancel_->hide();
+  };
   connect(job, &Job::done, this, ended);
   connect(job, &Job::cancelled, this, ended);
   connect(job, &Job::failed, this, ended);
@@ -169,56 +152,6 @@ void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& pictu
   if (picture && !picture->complete()) text += tr(", picture %1 of %2").arg(picture->level).arg(picture->levels);
   frame_->setText(text);
 }
-
-void MainWindow::open(const QString& path, const std::optional<Parameters>& parameters) {
-  try {
-    switch (file_kind(path.toStdString())) {
-      case FileKind::material:
-      case FileKind::mesh:
-        open_material(path, parameters);
-        break;
-      case FileKind::atoms:
-      case FileKind::picture:
-        complain(tr("%1: cannot be opened yet").arg(path));
-        break;
-    }
-  } catch (const Error& error) {
-    complain(QString::fromUtf8(error.what()));
-  }
-}
-
-void MainWindow::open_material(const QString& path, const std::optional<Parameters>& parameters) {
-  const auto result = std::make_shared<std::optional<Document>>();
-  const MaterialParts parts = parts_needed(parameters ? *parameters : workspace_.parameters());
-  opening_ = std::make_unique<Job>(tr("Opening %1").arg(QFileInfo(path).fileName()),
-                                   [result, parts, file = path.toStdString()](Progress& progress) {
-                                     *result = open_document(file, parts, progress);
-                                   });
-  connect(opening_.get(), &Job::done, this, [this, result, parameters] {
-    opening_.release()->deleteLater();
-    workspace_.show_document(std::move(**result), parameters);
-    pages_->setCurrentWidget(viewport_);
-    viewport_->setFocus();
-  });
-  connect(opening_.get(), &Job::failed, this, [this](const QString& message) {
-    opening_.release()->deleteLater();
-    complain(message);
-  });
-  follow(opening_.get());
-  opening_->start();
-}
-
-void MainWindow::load_parameters(const QString& path) {
-  try {
-    workspace_.change(read_crf(path.toStdString(), workspace_.parameters()),
-                      tr("Load %1").arg(QFileInfo(path).fileName()));
-    workspace_.say(tr("Parameters of %1").arg(path));
-  } catch (const Error& error) {
-    complain(QString::fromUtf8(error.what()));
-  }
-}
-
-void MainWindow::show_loader() {}
 
 void MainWindow::next_mode(int step) {
   constexpr int count = 5;

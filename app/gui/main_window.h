@@ -13,13 +13,19 @@ class QLabel;
 class QMenu;
 class QProgressBar;
 class QStackedWidget;
-class QToolBar;
+class QToolButton;
 
 namespace atomesh::gui {
 
+class ColorMapEditor;
 class CrystalViewDialog;
+class DefectDock;
 class Job;
+class LoaderPage;
+class PreprocessingPage;
+class RenderingParameters;
 class Viewport;
+struct PreprocessingRequest;
 struct WorkerPicture;
 
 class MainWindow : public QMainWindow {
@@ -33,12 +39,14 @@ class MainWindow : public QMainWindow {
   Viewport& viewport() { return *viewport_; }
 
   // A data file of any kind: material and mesh files open, atoms go to preprocessing, a picture that atomesh made
-  // brings back its view. With parameters, those; else those there are.
-  void open(const QString& path, const std::optional<Parameters>& parameters = std::nullopt);
+  // brings back its view. `crf`: the parameters to begin with; "": those there are.
+  void open(const QString& path, const QString& crf = {});
+  // As one step of the history.
   void load_parameters(const QString& path);
 
  public slots:
   void show_loader();
+  void show_view();
   void next_mode(int step = 1);
   void next_shading();
   void toggle_full_screen();
@@ -50,6 +58,9 @@ class MainWindow : public QMainWindow {
  private:
   void build_pages();
   void build_docks();
+  void build_left_docks();
+  void build_right_docks();
+  void build_bottom_docks();
   QDockWidget* add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area);
   void build_menus();
   void build_file_menu();
@@ -67,13 +78,24 @@ class MainWindow : public QMainWindow {
   void follow(Job* job);
   void complain(const QString& message);
   void change_view(const QString& name, const std::function<void(Parameters&)>& change);
-  void open_material(const QString& path, const std::optional<Parameters>& parameters);
+  struct Opened;
+  void take(const Opened& opened, const QString& path, const QString& crf);
+  void show_document(Document document, const std::optional<Parameters>& parameters);
+  void preprocess(const PreprocessingRequest& request, const QString& crf);
+  void fill_recent_menu();
+  void show_help(const QString& topic);
 
   Workspace workspace_;
   QStackedWidget* pages_ = nullptr;
+  LoaderPage* loader_ = nullptr;
+  PreprocessingPage* preprocessing_ = nullptr;
   Viewport* viewport_ = nullptr;
+  ColorMapEditor* color_map_ = nullptr;
+  RenderingParameters* rendering_ = nullptr;
+  DefectDock* defects_ = nullptr;
   CrystalViewDialog* crystal_view_ = nullptr;
   std::unique_ptr<Job> opening_;
+  std::optional<Parameters> picture_parameters_;  // of the picture whose atoms are being preprocessed
 
   QAction* undo_ = nullptr;
   QAction* redo_ = nullptr;
@@ -84,10 +106,12 @@ class MainWindow : public QMainWindow {
   std::vector<QAction*> needing_document_;
   std::vector<QDockWidget*> docks_;
   QMenu* docks_menu_ = nullptr;
+  QMenu* recent_menu_ = nullptr;
   QLabel* counts_ = nullptr;
   QLabel* frame_ = nullptr;
   QLabel* hint_ = nullptr;
   QProgressBar* progress_ = nullptr;
+  QToolButton* cancel_ = nullptr;
 };
 
 }  // namespace atomesh::gui

@@ -10,8 +10,11 @@
 #include "app/gui/crystal_view_dialog.h"
 #include "app/gui/main_window.h"
 #include "app/gui/navigation.h"
+#include "app/gui/parameter_files.h"
+#include "app/gui/theme.h"
 #include "app/gui/viewport.h"
 #include "core/camera.h"
+#include "core/error.h"
 
 namespace atomesh::gui {
 
@@ -36,6 +39,29 @@ void MainWindow::build_file_menu() {
            "*.node *.ele *.png);;Materials (*.crb *.crt);;All files (*)"));
     if (!path.isEmpty()) this->open(path);
   });
+  recent_menu_ = menu->addMenu(tr("Open &recent"));
+  recent_menu_->setObjectName("menu_recent");
+  recent_menu_->setToolTipsVisible(true);
+  connect(recent_menu_, &QMenu::aboutToShow, this, &MainWindow::fill_recent_menu);
+  QAction* loader = menu->addAction(tr("&Loader…"), this, &MainWindow::show_loader);
+  loader->setObjectName("action_loader");
+  loader->setShortcut(QKeySequence::New);
+  menu->addSeparator();
+  QAction* load = menu->addAction(tr("Load &parameters…"), this, [this] {
+    const QString path = QFileDialog::getOpenFileName(this, tr("Load parameters"), {}, tr("Parameters (*.crf)"));
+    if (!path.isEmpty()) load_parameters(path);
+  });
+  load->setObjectName("action_load_parameters");
+  QAction* save = menu->addAction(tr("Sa&ve parameters…"), this, [this] {
+    const QString path = QFileDialog::getSaveFileName(this, tr("Save parameters"), {}, tr("Parameters (*.crf)"));
+    if (path.isEmpty()) return;
+    try {
+      save_parameter_file(workspace_, parameter_file_path(path, workspace_.document()));
+    } catch (const Error& error) {
+      complain(QString::fromUtf8(error.what()));
+    }
+  });
+  save->setObjectName("action_save_parameters");
   menu->addSeparator();
   QAction* quit = menu->addAction(tr("E&xit"));
   quit->setObjectName("action_quit");
@@ -202,6 +228,21 @@ void MainWindow::build_window_menu() {
   full_screen_->setObjectName("action_full_screen");
   full_screen_->setShortcut(Qt::Key_F);
   full_screen_->setCheckable(true);
+  docks_menu_->addSeparator();
+  QMenu* theme = docks_menu_->addMenu(tr("&Theme"));
+  auto* themes = new QActionGroup(this);
+  const std::array<std::pair<Theme, QString>, 3> choices{
+      {{Theme::system, tr("As the system")}, {Theme::light, tr("Light")}, {Theme::dark, tr("Dark")}}};
+  for (const auto& [value, text] : choices) {
+    QAction* action = theme->addAction(text);
+    action->setObjectName(QString("theme_%1").arg(static_cast<int>(value)));
+    action->setCheckable(true);
+    action->setChecked(chosen_theme() == value);
+    themes->addAction(action);
+    connect(action, &QAction::triggered, this, [chosen = value] {
+      if (ThemeKeeper::instance() != nullptr) ThemeKeeper::instance()->choose(chosen);
+    });
+  }
   docks_menu_->addSeparator();
   for (QDockWidget* dock : docks_) docks_menu_->addAction(dock->toggleViewAction());
 }

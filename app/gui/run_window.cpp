@@ -4,6 +4,7 @@
 #include <QSurfaceFormat>
 
 #include "app/gui/main_window.h"
+#include "app/gui/theme.h"
 
 namespace atomesh::gui {
 
@@ -25,7 +26,9 @@ int run_window(const WindowArguments& arguments) {
   QApplication::setApplicationName("atomesh");
   QApplication::setOrganizationName("atomesh");
   QApplication::setDesktopFileName("atomesh");
+  ThemeKeeper theme;
   MainWindow window;
+  if (arguments.files.empty()) window.show_loader();
   window.show();
   for (const std::string& file : arguments.files) {
     const QString path = QString::fromStdString(file);

@@ -1,0 +1,126 @@
+// Pages and docks of the window, and what they ask of each other.
+#include <QDockWidget>
+#include <QScrollArea>
+#include <QStackedWidget>
+
+#include "app/gui/color_map_editor.h"
+#include "app/gui/defect_dock.h"
+#include "app/gui/display_options.h"
+#include "app/gui/drop_target.h"
+#include "app/gui/loader_page.h"
+#include "app/gui/main_window.h"
+#include "app/gui/material_panel.h"
+#include "app/gui/preprocessing_page.h"
+#include "app/gui/rendering_parameters.h"
+#include "app/gui/viewport.h"
+
+namespace atomesh::gui {
+
+void MainWindow::build_pages() {
+  pages_ = new QStackedWidget(this);
+  pages_->setObjectName("pages");
+  loader_ = new LoaderPage(pages_);
+  preprocessing_ = new PreprocessingPage(pages_);
+  viewport_ = new Viewport(workspace_, pages_);
+  pages_->addWidget(loader_);
+  pages_->addWidget(preprocessing_);
+  pages_->addWidget(viewport_);
+  setCentralWidget(pages_);
+
+  connect(loader_, &LoaderPage::open_requested, this, &MainWindow::open);
+  connect(loader_, &LoaderPage::preprocess_requested, this, &MainWindow::preprocess);
+  connect(loader_, &LoaderPage::cancelled, this, [this] {
+    if (workspace_.document()) {
+      show_view();
+    } else {
+      close();
+    }
+  });
+  connect(preprocessing_, &PreprocessingPage::go_on, this, [this](const Document& document, const QString& crf) {
+    std::optional<Parameters> parameters = picture_parameters_;
+    picture_parameters_.reset();
+    show_document(document, parameters);
+    if (!crf.isEmpty()) load_parameters(crf);
+  });
+  connect(preprocessing_, &PreprocessingPage::back_to_loader, this, [this](const QString& file) {
+    loader_->set_file(file);
+    show_loader();
+  });
+  connect(preprocessing_, &PreprocessingPage::said, &workspace_, &Workspace::say);
+
+  auto* drops = new DropTarget(*this);
+  drops->setParent(this);
+  connect(drops, &DropTarget::dropped, this, [this](const QString& sample, const QString& crf) {
+    if (sample.isEmpty()) {
+      load_parameters(crf);
+    } else {
+      open(sample, crf);
+    }
+  });
+  connect(drops, &DropTarget::refused, this, &MainWindow::complain);
+}
+
+QDockWidget* MainWindow::add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area) {
+  auto* dock = new QDockWidget(title, this);
+  dock->setObjectName(content->objectName() + "_dock");
+  dock->setWidget(content);
+  addDockWidget(area, dock);
+  docks_.push_back(dock);
+  return dock;
+}
+
+void MainWindow::build_docks() {
+  setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
+  setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
+  setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
+  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+  build_left_docks();
+  build_right_docks();
+  build_bottom_docks();
+}
+
+void MainWindow::build_left_docks() {
+  add_dock(new MaterialPanel(workspace_), tr("Material"), Qt::LeftDockWidgetArea);
+  defects_ = new DefectDock(workspace_, this);
+  add_dock(defects_, tr("Crystal defects"), Qt::LeftDockWidgetArea);
+}
+
+void MainWindow::build_right_docks() {
+  auto* display = new DisplayOptions(workspace_, this);
+  QDockWidget* display_dock = add_dock(display, tr("Display options"), Qt::RightDockWidgetArea);
+  connect(display, &DisplayOptions::full_screen_requested, this, &MainWindow::toggle_full_screen);
+  connect(display, &DisplayOptions::reset_orientation_requested, this, &MainWindow::reset_orientation);
+  connect(display, &DisplayOptions::help_requested, this, &MainWindow::show_help);
+
+  rendering_ = new RenderingParameters(workspace_, this);
+  QDockWidget* rendering_dock = add_dock(rendering_, tr("Rendering parameters"), Qt::RightDockWidgetArea);
+  connect(rendering_, &RenderingParameters::help_requested, this, &MainWindow::show_help);
+
+  color_map_ = new ColorMapEditor(workspace_, this);
+  QDockWidget* map_dock = add_dock(color_map_, tr("Color map"), Qt::RightDockWidgetArea);
+  connect(rendering_, &RenderingParameters::edit_color_map_requested, map_dock, [map_dock] {
+    map_dock->show();
+    map_dock->raise();
+  });
+  connect(rendering_, &RenderingParameters::create_histogram_requested, color_map_,
+          &ColorMapEditor::ask_where_to_write_histogram);
+  tabifyDockWidget(display_dock, rendering_dock);
+  tabifyDockWidget(rendering_dock, map_dock);
+  rendering_dock->raise();
+}
+
+void MainWindow::build_bottom_docks() {}
+
+void MainWindow::show_help(const QString&) {}
+
+void MainWindow::show_loader() {
+  loader_->set_has_view(workspace_.document().has_value());
+  pages_->setCurrentWidget(loader_);
+}
+
+void MainWindow::show_view() {
+  pages_->setCurrentWidget(viewport_);
+  viewport_->setFocus();
+}
+
+}  // namespace atomesh::gui
