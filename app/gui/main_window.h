@@ -20,6 +20,7 @@ namespace atomesh::gui {
 class ColorMapEditor;
 class CrystalViewDialog;
 class DefectDock;
+class HelpWindow;
 class Job;
 class LoaderPage;
 class PreprocessingPage;
@@ -93,6 +94,7 @@ class MainWindow : public QMainWindow {
   ColorMapEditor* color_map_ = nullptr;
   RenderingParameters* rendering_ = nullptr;
   DefectDock* defects_ = nullptr;
+  HelpWindow* help_ = nullptr;
   CrystalViewDialog* crystal_view_ = nullptr;
   std::unique_ptr<Job> opening_;
   std::optional<Parameters> picture_parameters_;  // of the picture whose atoms are being preprocessed

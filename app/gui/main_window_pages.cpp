@@ -7,6 +7,7 @@
 #include "app/gui/defect_dock.h"
 #include "app/gui/display_options.h"
 #include "app/gui/drop_target.h"
+#include "app/gui/help_window.h"
 #include "app/gui/loader_page.h"
 #include "app/gui/main_window.h"
 #include "app/gui/material_panel.h"
@@ -111,7 +112,10 @@ void MainWindow::build_right_docks() {
 
 void MainWindow::build_bottom_docks() {}
 
-void MainWindow::show_help(const QString&) {}
+void MainWindow::show_help(const QString& topic) {
+  if (help_ == nullptr) help_ = new HelpWindow(this);
+  help_->show_topic(topic);
+}
 
 void MainWindow::show_loader() {
   loader_->set_has_view(workspace_.document().has_value());

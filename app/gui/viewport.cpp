@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "app/gui/card_view.h"
+#include "app/gui/cut_handle.h"
 #include "app/gui/overlay.h"
+#include "app/gui/view_input.h"
 
 namespace atomesh::gui {
 
@@ -24,6 +26,9 @@ Viewport::Viewport(Workspace& workspace, QWidget* parent) : QWidget(parent), wor
     refresh_overlay();
     order();
   });
+  input_ = std::make_unique<ViewInput>(workspace_, *this);
+  input_->set_scene_source([this] { return drawn_by_gpu() ? scene_ : picture_; });
+  connect(input_.get(), &ViewInput::hot_plane_changed, this, &Viewport::refresh_overlay);
   connect(&workspace_, &Workspace::picks_changed, this, &Viewport::refresh_overlay);
   connect(&workspace_, &Workspace::marks_changed, this, &Viewport::refresh_overlay);
 }
@@ -113,6 +118,10 @@ QImage Viewport::overlay(const WorkerPicture& of, const Parameters& parameters, 
                                      of.max_thickness, workspace_.marks());
   add_picks(parts, workspace_.picks(), *of.material, parameters);
   Image image(camera.width, camera.height);
+  if (workspace_.view_options().cut_handles) {
+    draw_cut_handles(image, 0, camera, parameters.background, cut_handles(parameters, of.scene->bounds, camera),
+                     input_->hot_plane());
+  }
   draw_overlay(image, 0, camera, *of.material, parameters.background, parts);
   return to_overlay(image);
 }

@@ -11,6 +11,7 @@
 namespace atomesh::gui {
 
 class CardView;
+class ViewInput;
 
 // A plain widget, so that where OpenGL runs in software nothing waits for it: pictures of the processor are painted as
 // they are. The graphics card's view (CardView) lies over it while the card draws, and is made when it first does.
@@ -29,6 +30,7 @@ class Viewport : public QWidget {
   bool drawn_by_gpu() const;
   // What is on the screen, in device pixels: the picture with what lies over it. Null before the first.
   QImage screenshot();
+  ViewInput& input() { return *input_; }
 
  signals:
   // A frame is on its way to the screen: of the CPU renderers, with all that is known of it; or (null) of the card,
@@ -56,8 +58,9 @@ class Viewport : public QWidget {
   std::uint64_t number_ = 0;                      // of the last order
   std::shared_ptr<const WorkerPicture> picture_;  // the last of the CPU renderers
   std::shared_ptr<const WorkerPicture> scene_;    // the last scene for the card
-  CardView* card_ = nullptr;                      // once it was needed
-  bool card_painted_ = false;                     // with everything as it is now
+  std::unique_ptr<ViewInput> input_;
+  CardView* card_ = nullptr;   // once it was needed
+  bool card_painted_ = false;  // with everything as it is now
   bool card_failed_ = false;
   QImage overlay_;  // of `picture_`
   bool was_settled_ = false;
