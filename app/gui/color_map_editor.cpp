@@ -17,6 +17,7 @@
 #include <QSpinBox>
 #include <QTableView>
 #include <QVBoxLayout>
+#include <utility>
 
 #include "app/gui/color_map_canvas.h"
 #include "app/gui/color_map_painting.h"
@@ -325,6 +326,7 @@ void ColorMapEditor::show_histogram() {
   canvas_->set_histogram(histogram, note);
   entries_->set_range(histogram ? histogram->low : 0.0, histogram ? histogram->high : 1.0);
   create_histogram_->setEnabled(histogram != nullptr);
+  write_when_counted();
   const bool field = histogram && !histogram->of_atoms;
   range_->setVisible(field || workspace_.parameters().volume.range_low || workspace_.parameters().volume.range_high);
   range_low_->setPlaceholderText(field ? tr("auto: %1").arg(histogram->low) : tr("auto"));
@@ -408,13 +410,29 @@ void ColorMapEditor::paste_text() {
 }
 
 void ColorMapEditor::write_histogram(const QString& path) {
-  if (!source_.histogram()) return;
+  if (!workspace_.document()) {
+    workspace_.complain(tr("Open a file before its scalar histogram is created."));
+    return;
+  }
+  histogram_path_ = path;
+  source_.set_wanted(true);
+  write_when_counted();
+}
+
+void ColorMapEditor::write_when_counted() {
+  if (!workspace_.document()) histogram_path_.clear();  // it was closed meanwhile
+  if (histogram_path_.isEmpty()) return;
+  const bool in_vain = !source_.counting() && !source_.trouble().isEmpty();
+  if (!in_vain && !source_.up_to_date()) return;
+  const QString path = std::exchange(histogram_path_, {});
   try {
+    if (in_vain) throw UsageError(source_.trouble().toStdString());
     write_histogram_csv(path.toStdString(), *source_.histogram());
     workspace_.say(tr("Scalar histogram of %L1 bins written to %2").arg(source_.histogram()->counts.size()).arg(path));
   } catch (const Error& error) {
-    workspace_.complain(QString::fromUtf8(error.what()));
+    workspace_.complain(tr("The scalar histogram was not written: %1").arg(QString::fromUtf8(error.what())));
   }
+  source_.set_wanted(isVisible());
 }
 
 void ColorMapEditor::ask_where_to_write_histogram() {

@@ -32,7 +32,8 @@ class ColorMapEditor : public QWidget {
   // As it is counted now; null before the first.
   std::shared_ptr<const ScalarHistogram> histogram() const { return source_.histogram(); }
   bool counting() const { return source_.counting(); }
-  // *Create Scalar Histogram*, without asking where to. Complains where it cannot be written.
+  // *Create Scalar Histogram*, without asking where to: at once, or when it is counted. Complains where there is
+  // nothing to count and where it cannot be written.
   void write_histogram(const QString& path);
 
  public slots:
@@ -59,6 +60,7 @@ class ColorMapEditor : public QWidget {
   void show_parameters();
   void show_histogram();
   void show_apply();
+  void write_when_counted();
   void show_refusal(const QString& why);
   void set_range(const std::string& key, QLineEdit* edit);
   void copy_text();
@@ -88,6 +90,7 @@ class ColorMapEditor : public QWidget {
   QCheckBox* auto_apply_ = nullptr;
   QPushButton* apply_ = nullptr;
   int colors_asked_ = 0;
+  QString histogram_path_;  // where the next histogram is to be written; "" nowhere
 };
 
 }  // namespace atomesh::gui

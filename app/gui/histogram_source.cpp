@@ -36,6 +36,17 @@ void HistogramSource::set_bins(int bins) {
   follow();
 }
 
+HistogramSource::Question HistogramSource::question() const {
+  Question asking{workspace_.document()->material, workspace_.parameters().volume, bins_};
+  asking.parameters.color_map = VolumeParameters{}.color_map;
+  asking.parameters.alpha_length = VolumeParameters{}.alpha_length;
+  return asking;
+}
+
+bool HistogramSource::up_to_date() const {
+  return histogram_ && !counting() && workspace_.document() && question() == asked_;
+}
+
 void HistogramSource::follow() {
   if (!wanted_ || !workspace_.document()) return;
   const MaterialParts parts{.atoms = true, .tetrahedra = true, .surface = false, .defects = true, .fields = true};
@@ -43,16 +54,14 @@ void HistogramSource::follow() {
     workspace_.need_parts(parts);  // and again by parts_changed()
     return;
   }
-  Question question{workspace_.document()->material, workspace_.parameters().volume, bins_};
-  question.parameters.color_map = VolumeParameters{}.color_map;
-  question.parameters.alpha_length = VolumeParameters{}.alpha_length;
-  if (question == asked_) return;
-  asked_ = question;
+  const Question asking = question();
+  if (asking == asked_) return;
+  asked_ = asking;
   const auto result = std::make_shared<ScalarHistogram>();
   job_.run(
       tr("Counting scalars"),
-      [question, result](Progress& progress) {
-        *result = scalar_histogram(*question.material, question.parameters, question.bins, progress);
+      [asking, result](Progress& progress) {
+        *result = scalar_histogram(*asking.material, asking.parameters, asking.bins, progress);
       },
       [this, result] {
         histogram_ = result;

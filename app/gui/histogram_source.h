@@ -28,6 +28,8 @@ class HistogramSource : public QObject {
   // The latest; null without a document and before the first. While another is counted it stays.
   const std::shared_ptr<const ScalarHistogram>& histogram() const { return histogram_; }
   bool counting() const { return job_.running(); }
+  // Whether it is that of the document and the scalar as they are now.
+  bool up_to_date() const;
   // Why there is none: "an unknown field …"; "" otherwise.
   const QString& trouble() const { return trouble_; }
 
@@ -41,6 +43,7 @@ class HistogramSource : public QObject {
     int bins = 0;
     bool operator==(const Question&) const = default;
   };
+  Question question() const;
   void follow();
 
   Workspace& workspace_;

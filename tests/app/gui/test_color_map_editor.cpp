@@ -13,6 +13,7 @@
 #include <QSpinBox>
 #include <QTableView>
 #include <QTest>
+#include <filesystem>
 
 #include "app/gui/color_map_canvas.h"
 #include "app/gui/color_map_editor.h"
@@ -377,6 +378,34 @@ TEST_F(ColorMapEditorTest, OnlyWhatIsLookedAtIsCounted) {
   EXPECT_FALSE(editor.counting());
   test::show(editor);
   EXPECT_TRUE(wait_for([&] { return editor.histogram() != nullptr; }));
+}
+
+TEST_F(ColorMapEditorTest, TheHistogramIsWrittenWhileNobodyLooks) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("histogram.csv");
+  QStringList complaints;
+  QObject::connect(&workspace, &Workspace::complained, [&](const QString& message) { complaints << message; });
+  editor.hide();
+  editor.write_histogram(QString::fromStdString(path));
+  ASSERT_EQ(complaints.size(), 1) << "nothing is open";
+  workspace.show_document(field_document());
+  editor.write_histogram(QString::fromStdString(path));
+  ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(path); }));
+  EXPECT_EQ(test::read_bytes(path), histogram_csv(*editor.histogram()));
+  // Of what is chosen now, not of what was counted before.
+  workspace.set("volume.range_low", "12");
+  EXPECT_FALSE(editor.counting()) << "nobody looks again";
+  std::filesystem::remove(path);
+  editor.write_histogram(QString::fromStdString(path));
+  ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(path); }));
+  EXPECT_TRUE(test::read_bytes(path).starts_with("scalar_from,scalar_to,value_from,value_to,count\n-inf,0,-inf,12,2\n"))
+      << test::read_bytes(path).substr(0, 200);
+  std::filesystem::remove(path);
+  workspace.set("volume.field", "no such field");
+  editor.write_histogram(QString::fromStdString(path));
+  ASSERT_TRUE(wait_for([&] { return complaints.size() == 2; }));
+  EXPECT_TRUE(complaints[1].contains("no such field")) << complaints[1].toStdString();
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 // A .crb of which only the surface was read: the editor asks for the rest.
