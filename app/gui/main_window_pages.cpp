@@ -78,6 +78,9 @@ void MainWindow::build_docks() {
   build_left_docks();
   build_right_docks();
   build_bottom_docks();
+  // Until the user's own layout is known: columns of text on either side, the rest for the view.
+  const int em = fontMetrics().averageCharWidth();
+  resizeDocks({docks_.front(), docks_[2]}, {44 * em, 58 * em}, Qt::Horizontal);
 }
 
 void MainWindow::build_left_docks() {
