@@ -206,36 +206,27 @@ void ColorMapEditor::build_range() {
 }
 
 void ColorMapEditor::build_layout() {
-  auto* top = new QHBoxLayout;
-  top->addWidget(presets_);
-  top->addWidget(part_);
-  top->addWidget(opacities_);
-  top->addWidget(reverse_);
-  top->addStretch(1);
-  auto* buttons = new QHBoxLayout;
-  buttons->addWidget(add_);
-  buttons->addWidget(remove_);
-  buttons->addWidget(color_);
-  buttons->addWidget(count_);
-  buttons->addStretch(1);
-  buttons->addWidget(auto_apply_);
-  buttons->addWidget(apply_);
-  auto* counting = new QHBoxLayout;
+  // Rows of few: a dock is narrow.
+  const auto row = [](std::initializer_list<QWidget*> left, std::initializer_list<QWidget*> right) {
+    auto* layout = new QHBoxLayout;
+    for (QWidget* widget : left) layout->addWidget(widget);
+    layout->addStretch(1);
+    for (QWidget* widget : right) layout->addWidget(widget);
+    return layout;
+  };
   auto* bins_label = new QLabel(tr("&Bins"), this);
   bins_label->setBuddy(bins_);
-  counting->addWidget(logarithmic_);
-  counting->addStretch(1);
-  counting->addWidget(bins_label);
-  counting->addWidget(bins_);
-  counting->addWidget(create_histogram_);
   auto* all = new QVBoxLayout(this);
-  all->addLayout(top);
+  all->addLayout(row({presets_, part_}, {}));
+  all->addLayout(row({opacities_, reverse_}, {}));
   all->addWidget(canvas_, 3);
   all->addWidget(range_);
-  all->addLayout(counting);
+  all->addLayout(row({logarithmic_}, {bins_label, bins_}));
+  all->addLayout(row({}, {create_histogram_}));
   all->addWidget(table_, 2);
   all->addWidget(refusal_);
-  all->addLayout(buttons);
+  all->addLayout(row({add_, remove_, color_}, {}));
+  all->addLayout(row({count_}, {auto_apply_, apply_}));
   QWidget* const order[] = {presets_,     part_, opacities_,        reverse_, canvas_, range_low_, range_high_,
                             logarithmic_, bins_, create_histogram_, table_,   add_,    remove_,    color_,
                             auto_apply_,  apply_};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <QAction>
+#include <QDockWidget>
 #include <QLabel>
 #include <QMessageBox>
 #include <QSignalSpy>
@@ -89,6 +90,16 @@ TEST_F(Window, TheCardDrawsTheSameSurfaceAndBalls) {
     // Pixels whose ray all but touches an edge.
     EXPECT_LT(difference.pixels_over, card.pixels.size() / 10000) << mode_name(mode);
   }
+}
+
+TEST_F(Window, DocksLeaveRoomForTheView) {
+  open_salt();
+  window->resize(1280, 800);
+  for (const QDockWidget* dock : window->findChildren<QDockWidget*>()) {
+    EXPECT_LE(dock->widget()->minimumSizeHint().width(), 60 * window->fontMetrics().averageCharWidth())
+        << dock->objectName().toStdString();
+  }
+  EXPECT_TRUE(wait_for([&] { return window->viewport().width() >= 500; })) << window->viewport().width();
 }
 
 TEST_F(Window, KeysOfTheManual) {
