@@ -143,6 +143,10 @@ void set_entry_opacity(ColorMap& map, std::size_t index, float opacity) {
   changed.color.a = opacity;
 }
 
+ColorMap fewer_entries(const ColorMap& map) {
+  return {thinned(map.entries)};
+}
+
 ColorMap combined_map(const ColorMap& colors, const ColorMap& opacities) {
   std::vector<double> places;
   for (const ColorMap* map : {&colors, &opacities}) {
@@ -157,9 +161,8 @@ ColorMap combined_map(const ColorMap& colors, const ColorMap& opacities) {
     combined.entries.push_back({s, left});
     if (right != left) combined.entries.push_back({s, right});
   }
-  combined.entries = thinned(combined.entries);
   if (combined.entries.size() == 1) combined.entries.push_back(combined.entries.front());
-  return combined;
+  return fewer_entries(combined);
 }
 
 void apply_color_map(ColorMap& map, const ColorMap& source, ColorMapPart part) {

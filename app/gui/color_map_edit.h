@@ -33,15 +33,17 @@ std::size_t set_entry_scalar(ColorMap& map, std::size_t index, double scalar);
 void set_entry_color(ColorMap& map, std::size_t index, const Vec3f& color);
 void set_entry_opacity(ColorMap& map, std::size_t index, float opacity);
 
+// A map of any number of entries, two or more, as one of at most 32: without those between the first and the last
+// without which it is the same to 1/4096, and then without those whose loss changes it least.
+ColorMap fewer_entries(const ColorMap& map);
+
 enum class ColorMapPart { all, color, opacity };
 
 // Each scalar gets what 1 - scalar had. Of a part of the map, see combined_map().
 void reverse_color_map(ColorMap& map, ColorMapPart part = ColorMapPart::all);
 // What `source` has, or only its colours or its opacities, the rest staying as it is; see combined_map().
 void apply_color_map(ColorMap& map, const ColorMap& source, ColorMapPart part);
-// The colours of one map with the opacities of another: entries wherever either has one, but those between the first
-// and the last without which the map is the same to 1/4096. Where that leaves more than 32, those go whose loss changes
-// the map least.
+// The colours of one map with the opacities of another: fewer_entries() of those of both.
 ColorMap combined_map(const ColorMap& colors, const ColorMap& opacities);
 // A map to take opacities from: "opaque" (1), "ramp" (the scalar), "square" (of the scalar), "threshold" (0, from the
 // middle on 1), "upper-half" (0 up to the middle, from there a ramp). Throws UsageError for another name.

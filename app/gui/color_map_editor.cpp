@@ -2,11 +2,8 @@
 
 #include <QApplication>
 #include <QCheckBox>
-#include <QClipboard>
 #include <QColorDialog>
 #include <QComboBox>
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QItemSelectionModel>
@@ -17,7 +14,6 @@
 #include <QSpinBox>
 #include <QTableView>
 #include <QVBoxLayout>
-#include <utility>
 
 #include "app/gui/color_map_canvas.h"
 #include "app/gui/color_map_painting.h"
@@ -111,6 +107,10 @@ void ColorMapEditor::fill_presets(QMenu* menu) {
   copy->setToolTip(tr("As --set %1=… and the .crf file have it").arg(map_key));
   QAction* paste = menu->addAction(tr("P&aste text"), this, &ColorMapEditor::paste_text);
   paste->setObjectName("paste_color_map");
+  QAction* load = menu->addAction(tr("&Load…"), this, &ColorMapEditor::ask_which_to_load);
+  load->setObjectName("load_color_map");
+  QAction* save = menu->addAction(tr("&Save…"), this, &ColorMapEditor::ask_where_to_save);
+  save->setObjectName("save_color_map");
 }
 
 void ColorMapEditor::fill_opacities(QMenu* menu) {
@@ -381,62 +381,6 @@ void ColorMapEditor::set_range(const std::string& key, QLineEdit* edit) {
   } catch (const UsageError& error) {
     show_refusal(QString::fromUtf8(error.what()));
   }
-}
-
-void ColorMapEditor::copy_text() {
-  QApplication::clipboard()->setText(QString::fromStdString(color_map_text(color_map())));
-}
-
-void ColorMapEditor::paste_text() {
-  try {
-    const ColorMap pasted = read_color_map(QApplication::clipboard()->text().trimmed().toStdString());
-    check_color_map(pasted);
-    ColorMap map = color_map();
-    apply_color_map(map, pasted, part());
-    change(map, tr("Paste color map"));
-    show_refusal({});
-  } catch (const UsageError& error) {
-    show_refusal(tr("The clipboard holds no color map: %1").arg(QString::fromUtf8(error.what())));
-  }
-}
-
-void ColorMapEditor::write_histogram(const QString& path) {
-  if (!workspace_.document()) {
-    workspace_.complain(tr("Open a file before its scalar histogram is created."));
-    return;
-  }
-  histogram_path_ = path;
-  source_.set_wanted(true);
-  write_when_counted();
-}
-
-void ColorMapEditor::write_when_counted() {
-  if (!workspace_.document()) histogram_path_.clear();  // it was closed meanwhile
-  if (histogram_path_.isEmpty()) return;
-  const bool in_vain = !source_.counting() && !source_.trouble().isEmpty();
-  if (!in_vain && !source_.up_to_date()) return;
-  const QString path = std::exchange(histogram_path_, {});
-  try {
-    if (in_vain) throw UsageError(source_.trouble().toStdString());
-    write_histogram_csv(path.toStdString(), *source_.histogram());
-    workspace_.say(tr("Scalar histogram of %L1 bins written to %2").arg(source_.histogram()->counts.size()).arg(path));
-  } catch (const Error& error) {
-    workspace_.complain(tr("The scalar histogram was not written: %1").arg(QString::fromUtf8(error.what())));
-  }
-  source_.set_wanted(isVisible());
-}
-
-void ColorMapEditor::ask_where_to_write_histogram() {
-  const auto& document = workspace_.document();
-  const QString folder = document ? QFileInfo(QString::fromStdString(document->path)).absolutePath() : QString();
-  auto* dialog = new QFileDialog(this, tr("Create Scalar Histogram"), folder, tr("Comma-separated values (*.csv)"));
-  dialog->setObjectName("histogram_file_dialog");
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setAcceptMode(QFileDialog::AcceptSave);
-  dialog->setDefaultSuffix("csv");
-  dialog->selectFile("histogram.csv");
-  connect(dialog, &QFileDialog::fileSelected, this, &ColorMapEditor::write_histogram);
-  dialog->open();
 }
 
 }  // namespace atomesh::gui

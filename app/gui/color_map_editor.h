@@ -36,6 +36,10 @@ class ColorMapEditor : public QWidget {
   // nothing to count and where it cannot be written.
   void write_histogram(const QString& path);
 
+  // A file of color_map_files.h; complains where there is none. Its colours alone where it has no opacities.
+  void load_color_map(const QString& path);
+  void save_color_map(const QString& path);
+
  public slots:
   void ask_color(std::size_t entry);
   void ask_where_to_write_histogram();
@@ -62,6 +66,8 @@ class ColorMapEditor : public QWidget {
   void show_apply();
   void write_when_counted();
   void show_refusal(const QString& why);
+  void ask_which_to_load();
+  void ask_where_to_save();
   void set_range(const std::string& key, QLineEdit* edit);
   void copy_text();
   void paste_text();

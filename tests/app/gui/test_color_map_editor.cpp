@@ -320,6 +320,29 @@ TEST_F(ColorMapEditorTest, TextGoesOutAndIn) {
   EXPECT_EQ(map(), read_color_map("0:#000000 1:#ffffff80"));
 }
 
+TEST_F(ColorMapEditorTest, MapsAreSavedAndLoaded) {
+  const test::TemporaryFolder folder;
+  const QString path = QString::fromStdString(folder.file("mine.json"));
+  const ColorMap mine = map();
+  editor.save_color_map(path);
+  choose("presets_menu", "preset_gray");
+  editor.load_color_map(path);
+  EXPECT_EQ(map(), mine);
+  workspace.undo();
+  EXPECT_EQ(map(), preset_color_map("gray"));
+  // A strip without opacities changes the colours alone.
+  Image strip(2, 1);
+  strip.at(0, 0) = {0, 0, 1, 1};
+  strip.at(1, 0) = {1, 0, 0, 1};
+  write_png(folder.file("strip.png"), strip);
+  editor.load_color_map(QString::fromStdString(folder.file("strip.png")));
+  EXPECT_EQ(map(), (ColorMap{{{0.0, {0, 0, 1, 0}}, {1.0, {1, 0, 0, 1}}}}));
+  QString complaint;
+  QObject::connect(&workspace, &Workspace::complained, [&](const QString& message) { complaint = message; });
+  editor.load_color_map(QString::fromStdString(folder.file("damaged.json", "[{]")));
+  EXPECT_TRUE(complaint.contains("damaged.json")) << complaint.toStdString();
+}
+
 TEST_F(ColorMapEditorTest, ApplyWaitsWhereAutoApplyIsOff) {
   auto& apply = child<QPushButton>(editor, "apply");
   EXPECT_FALSE(apply.isEnabled());
