@@ -22,6 +22,9 @@ class CrystalViewDialog;
 class DefectDock;
 class HelpWindow;
 class Job;
+class MovieDialog;
+class PictureCopier;
+class SavePictureDialog;
 class LoaderPage;
 class PreprocessingPage;
 class RenderingParameters;
@@ -65,7 +68,9 @@ class MainWindow : public QMainWindow {
   QDockWidget* add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area);
   void build_menus();
   void build_file_menu();
+  void add_output_actions(QMenu& menu);  // saving pictures and movies
   void build_edit_menu();
+  void add_copy_action(QMenu& menu);
   void build_view_menu();
   void build_mode_menu();
   void build_view_options(QMenu& menu);
@@ -96,6 +101,9 @@ class MainWindow : public QMainWindow {
   DefectDock* defects_ = nullptr;
   HelpWindow* help_ = nullptr;
   CrystalViewDialog* crystal_view_ = nullptr;
+  SavePictureDialog* save_picture_ = nullptr;
+  MovieDialog* movie_ = nullptr;
+  PictureCopier* copier_ = nullptr;
   std::unique_ptr<Job> opening_;
   std::optional<Parameters> picture_parameters_;  // of the picture whose atoms are being preprocessed
 

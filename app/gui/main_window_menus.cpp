@@ -64,6 +64,8 @@ void MainWindow::build_file_menu() {
   });
   save->setObjectName("action_save_parameters");
   menu->addSeparator();
+  add_output_actions(*menu);
+  menu->addSeparator();
   QAction* quit = menu->addAction(tr("E&xit"));
   quit->setObjectName("action_quit");
   quit->setShortcuts({QKeySequence(Qt::Key_Q), QKeySequence::Quit});
@@ -78,6 +80,8 @@ void MainWindow::build_edit_menu() {
   redo_ = menu->addAction(tr("&Redo"), this, [this] { workspace_.redo(); });
   redo_->setObjectName("action_redo");
   redo_->setShortcuts({QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
+  menu->addSeparator();
+  add_copy_action(*menu);
 }
 
 void MainWindow::build_mode_menu() {
