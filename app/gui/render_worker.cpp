@@ -46,18 +46,16 @@ QImage to_qimage(const Image& image) {
   return result;
 }
 
-QImage to_overlay(const Image& image) {
-  QImage result(image.width, image.height, QImage::Format_ARGB32_Premultiplied);
-  for (int row = 0; row < image.height; ++row) {
-    auto* const pixels = reinterpret_cast<QRgb*>(result.scanLine(row));
-    for (int column = 0; column < image.width; ++column) {
-      const Vec4f& pixel = image.at(column, row);
+void put_overlay(QImage& picture, const Image& band, int first_row) {
+  for (int row = 0; row < band.height; ++row) {
+    auto* const pixels = reinterpret_cast<QRgb*>(picture.scanLine(first_row + row));
+    for (int column = 0; column < band.width; ++column) {
+      const Vec4f& pixel = band.at(column, row);
       const float a = pixel.a;
       pixels[column] =
           a == 0.0F ? 0U : qRgba(to_byte(a * pixel.r), to_byte(a * pixel.g), to_byte(a * pixel.b), to_byte(a));
     }
   }
-  return result;
 }
 
 bool same_scene(const Parameters& a, const Parameters& b) {

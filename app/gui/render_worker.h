@@ -47,8 +47,9 @@ struct WorkerPicture {
 
 // Of format RGB32, or ARGB32 where a pixel is not opaque; channels rounded to the nearest of 256 as write_png() does.
 QImage to_qimage(const Image& image);
-// Of format ARGB32_Premultiplied, for what is transparent nearly everywhere.
-QImage to_overlay(const Image& image);
+// A band of what is transparent nearly everywhere, from that row on; the picture is as wide, of format
+// ARGB32_Premultiplied.
+void put_overlay(QImage& picture, const Image& band, int first_row);
 
 // A new order ends the one that is drawn, once that has given its first picture: while the view turns there is always
 // one to see. An order whose picture should be done within an instant (by how long the last took) is drawn whole;

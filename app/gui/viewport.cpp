@@ -1,6 +1,7 @@
 #include "app/gui/viewport.h"
 
 #include <QPainter>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -117,13 +118,18 @@ QImage Viewport::overlay(const WorkerPicture& of, const Parameters& parameters, 
   OverlayParts parts = overlay_parts(workspace_.view_options(), *of.scene, *of.material, parameters, camera,
                                      of.max_thickness, workspace_.marks());
   add_picks(parts, workspace_.picks(), *of.material, parameters);
-  Image image(camera.width, camera.height);
-  if (workspace_.view_options().cut_handles) {
-    draw_cut_handles(image, 0, camera, parameters.background, cut_handles(parameters, of.scene->bounds, camera),
-                     input_->hot_plane());
+  std::vector<CutHandle> handles;
+  if (workspace_.view_options().cut_handles) handles = cut_handles(parameters, of.scene->bounds, camera);
+  // In bands that stay in the processor's caches: of a large view all at once would be a hundred megabytes.
+  QImage result(camera.width, camera.height, QImage::Format_ARGB32_Premultiplied);
+  constexpr int rows = 64;
+  for (int first = 0; first < camera.height; first += rows) {
+    Image band(camera.width, std::min(rows, camera.height - first));
+    draw_cut_handles(band, first, camera, parameters.background, handles, input_->hot_plane());
+    draw_overlay(band, first, camera, *of.material, parameters.background, parts);
+    put_overlay(result, band, first);
   }
-  draw_overlay(image, 0, camera, *of.material, parameters.background, parts);
-  return to_overlay(image);
+  return result;
 }
 
 void Viewport::refresh_overlay() {

@@ -313,6 +313,27 @@ TEST_F(Subcommands, LegendsAreDrawnAndReported) {
   EXPECT_NE(small.err.find("no room"), std::string::npos) << small.err;
 }
 
+TEST_F(Subcommands, TripodsAreDrawnAndReported) {
+  const std::vector<std::string> balls{"render", "d.crb", "-o", "t.png", "--mode", "atoms", "--size", "240x180"};
+  const auto with = [&balls](std::vector<std::string> more) {
+    more.insert(more.begin(), balls.begin(), balls.end());
+    return more;
+  };
+  EXPECT_FALSE(run_json(balls).contains("tripod"));
+  const std::string plain = place->read("t.png");
+  const json report = run_json(with({"--tripod", "--scale-bar"}));
+  EXPECT_NE(place->read("t.png"), plain);
+  // The sample is diamond with its own primitive cell, whose vectors are none of x, y, z.
+  EXPECT_EQ(report["tripod"]["arrows"], json::array({"x", "y", "z", "a", "b", "c"}));
+  EXPECT_LE(report["tripod"]["box"][3], report["scale_bar"]["box"][1]);
+  place->write("whole.png", place->read("t.png"));
+  const json passes = run_json(with({"--tripod", "--scale-bar", "--pass-rows", "31", "--reference", "whole.png"}));
+  EXPECT_EQ(passes["reference"]["max"], 0.0);
+  const Outcome small = run({"render", "d.crb", "-o", "s.png", "--mode", "atoms", "--size", "24x18", "--tripod"});
+  EXPECT_EQ(small.exit_code, 0);
+  EXPECT_NE(small.err.find("--tripod: the picture of 24x18 pixels has no room"), std::string::npos) << small.err;
+}
+
 TEST_F(Subcommands, InfoSaysWhatIsThere) {
   const json crb = run_json({"info", "d.crb"});
   expect_keys(crb, {"file", "kind", "version", "atoms", "tetrahedra", "triangles", "box", "species", "scalars",
