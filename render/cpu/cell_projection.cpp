@@ -82,7 +82,6 @@ class CellProjectionFrame final : public Frame {
       intervals_ = MapIntervals(parameters.volume.color_map);
       optics_.map = intervals_.data();
       optics_.map_grid = intervals_.grid();
-      optics_.map_intervals = static_cast<int>(intervals_.size());
     } else if (parameters.volume_surface.face_alpha > 0.0 && !scene.surface.empty()) {
       optics_.layer_alpha = static_cast<float>(parameters.volume_surface.face_alpha);
     }

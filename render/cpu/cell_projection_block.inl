@@ -74,7 +74,13 @@ static inline void compose(const Integrator& integrator, Layers& layers, std::ui
                            const Lanes& u_out, unsigned lanes, Light& light) {
   layers.lay_before(u_in, u_out, lanes, light);
   finish_opaque(light);
-  integrator.compose(record, u_in, u_out, light);
+  if constexpr (Integrator::prepares) {
+    typename Integrator::Prepared prepared;
+    integrator.prepare(record, u_in, u_out, prepared);
+    integrator.lay(record, prepared, light);
+  } else {
+    integrator.compose(record, u_in, u_out, light);
+  }
   finish_opaque(light);
 }
 
@@ -228,6 +234,40 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
   return sorted;
 }
 
+// Segments are prepared for so many cells at a time before they are laid: which way each then goes depends on nothing
+// that has yet to be computed.
+constexpr std::uint32_t cells_prepared = 16;
+
+// Cells in the order that cross_cells() found, of a block without layers, by an integrator that prepares. Returns the
+// steps.
+template <class Integrator>
+static __attribute__((noinline, flatten)) std::uint64_t compose_prepared(const Integrator& integrator,
+                                                                         const BlockScratch& scratch,
+                                                                         std::uint32_t count, Light& result) {
+  typename Integrator::Prepared prepared[cells_prepared];
+  Light light = result;
+  std::uint64_t steps = 0;
+  bool open = true;
+  for (std::uint32_t n = 0; n < count && open;) {
+    const std::uint32_t end = n + cells_prepared < count ? n + cells_prepared : count;
+    for (std::uint32_t at = n; at < end; ++at) {
+      const std::uint32_t next = scratch.order[at];
+      if (at + values_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[at + values_ahead]]));
+      integrator.prepare(scratch.record[next], load(scratch.u_in + 16 * next), load(scratch.u_out + 16 * next),
+                         prepared[at - n]);
+    }
+    for (const typename Integrator::Prepared* from = prepared; n < end && open; ++n, ++from) {
+      const std::uint32_t next = scratch.order[n];
+      steps += static_cast<unsigned>(__builtin_popcount(scratch.lanes[next]));
+      integrator.lay(scratch.record[next], *from, light);
+      finish_opaque(light);
+      open = any(light.through > Lanes(0.0F));
+    }
+  }
+  result = light;
+  return steps;
+}
+
 template <class Integrator>
 static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, const CellOptics& optics,
                                                               const BlockInput& block, const BlockScratch& scratch,
@@ -249,6 +289,8 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   Light light;
   if (!sorted) {
     steps = compose_cyclic(integrator, layers, scratch, count, light);
+  } else if constexpr (Integrator::prepares) {
+    steps = compose_prepared(integrator, scratch, count, light);
   } else {
     for (std::uint32_t n = 0; n < count; ++n) {
       const std::uint32_t next = scratch.order[n];

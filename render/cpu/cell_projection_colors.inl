@@ -55,6 +55,7 @@ class ColorIntegrator : public BlockOptics {
   ColorIntegrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
       : BlockOptics(view, optics, block, pixels), rule_(optics), colors_(block.colors), ranges_(block.ranges) {}
 
+  static constexpr bool prepares = false;
   using Record = CellColors;
   const CellColors& record(std::uint32_t number) const { return colors_[number]; }
 

@@ -99,16 +99,17 @@ struct ColorRange {
 };
 
 // One scalar; `base` is counted from `reference`, and (i, j) from the pixel at `column` and `row`, where the centroid
-// is seen.
+// is seen. Clamped only where rounding may leave the range by more than a few millionths of it (`wild`).
 struct alignas(64) CellScalar {
   float base_a, base_b, base_c;
-  float slope_a, slope_b, slope_c;
+  float slope_a, slope_b, slope_c;  // half the slope
   float column, row;
   float depth;  // z_cell - z_ref
   float low, high;
   float reference;               // the mean of the vertices'
   std::uint16_t first_interval;  // of the colour map, that the cell's scalars touch
   std::uint16_t last_interval;
+  std::uint32_t wild;
 };
 
 // A linear piece of the colour map: colour = first + (s - begin) · slope from begin up to the next one's. RGB, then
@@ -118,6 +119,7 @@ struct MapInterval {
   float begin_rest;  // what a float leaves of it
   float first[4];
   float slope[4];
+  float thin_length;  // alpha_length times the way, of which no more than optics::thin_limit is absorbed at any scalar
 };
 
 // Where a ray enters the surface, or leaves it.
@@ -138,10 +140,9 @@ struct CellOptics {
   Integrator integrator;
   int samples;                    // per cell, of Integrator::sampled
   const float* psi;               // optics::psi_table(), of Integrator::preintegrated
-  const MapInterval* map;         // mode volume; nullptr where vertices carry RGBA
+  const MapInterval* map;         // MapIntervals::data() in mode volume; nullptr where vertices carry RGBA
   const std::uint16_t* map_grid;  // MapIntervals::grid()
-  int map_intervals;
-  Shader layer;  // mode volume_surface; shade is nullptr elsewhere
+  Shader layer;                   // mode volume_surface; shade is nullptr elsewhere
   float layer_alpha;
   // What the sample is filled with between the cells, wherever the surface says that a ray is inside. Then the layers'
   // hits are those where rays leave, too.

@@ -11,25 +11,52 @@ class MappedCells : public BlockOptics {
   MappedCells(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
       : BlockOptics(view, optics, block, pixels), scalars_(block.scalars) {}
 
+  static constexpr bool prepares = true;
   using Record = CellScalar;
   const CellScalar& record(std::uint32_t number) const { return scalars_[number]; }
 
- protected:
-  // Scalars of the segment's ends, from the cell's reference, and `length` as ClosedForm::add() has it.
-  struct Segment {
-    Lanes s_in, s_out, length;
+  struct Intervals {
+    int first, last;
   };
-  Segment segment(const CellScalar& cell, const Lanes& u_in, const Lanes& u_out) const {
-    const Way w = way(u_in, u_out, cell.depth);
+  // The scalar in the segment's middle, from the cell's reference, and half of what it changes by; `length` as
+  // ClosedForm::add() has it; and the intervals that lanes with a segment touch.
+  struct Prepared {
+    Lanes middle, half, length;
+    Intervals range;
+    bool thin;  // the optical depth of no lane's segment exceeds thin_limit
+  };
+  void prepare(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Prepared& prepared) const {
+    const CellScalar& cell = scalars_[number];
+    const Mask met = u_in < u_out;
+    const Lanes z_in = relative_depth(min(u_in, u_out)) - Lanes(cell.depth);
+    const Lanes z_out = relative_depth(u_out) - Lanes(cell.depth);
+    const Lanes length = select(met, (z_out - z_in) * extinction(), Lanes(0.0F));
     const Pixels pixels{pixels_.column - Lanes(cell.column), pixels_.row - Lanes(cell.row)};
     const Lanes base = affine(pixels, cell.base_a, cell.base_b, cell.base_c);
     const Lanes slope = affine(pixels, cell.slope_a, cell.slope_b, cell.slope_c);
-    const float low = cell.low - cell.reference;
-    const float high = cell.high - cell.reference;
-    return {clamp(multiply_add(w.z_in, slope, base), low, high), clamp(multiply_add(w.z_out, slope, base), low, high),
-            w.length};
+    Lanes middle = multiply_add(z_in + z_out, slope, base);
+    Lanes half = (z_out - z_in) * slope;
+    if (cell.wild != 0) {
+      const float low = cell.low - cell.reference;
+      const float high = cell.high - cell.reference;
+      const Lanes s_in = clamp(middle - half, low, high);
+      const Lanes s_out = clamp(middle + half, low, high);
+      middle = Lanes(0.5F) * (s_in + s_out);
+      half = Lanes(0.5F) * (s_out - s_in);
+    }
+    prepared.middle = middle;
+    prepared.half = half;
+    prepared.length = length;
+    const Lanes reach = magnitude(half);
+    const Intervals range = intervals(cell, middle - reach, middle + reach, met);
+    prepared.range = range;
+    const float first_thin = interval(range.first).thin_length;
+    const float last_thin = interval(range.last).thin_length;
+    prepared.thin =
+        range.last - range.first <= 1 && !any(length > Lanes(first_thin < last_thin ? first_thin : last_thin));
   }
 
+ protected:
   const MapInterval& interval(int n) const { return optics_.map[n]; }
 
   // Where an interval begins, from the cell's reference: the difference of two floats that are near each other is
@@ -46,21 +73,34 @@ class MappedCells : public BlockOptics {
     return color;
   }
 
-  // The intervals that scalars from `bottom` to `top` of any lane in `met` may touch, of those that the cell touches.
-  struct Intervals {
-    int first, last;
-  };
+  // The intervals that the scalars from `bottom` to `top` of the lanes in `met` touch, of those that the cell touches.
+  // First comes after last where no lane is met.
   Intervals intervals(const CellScalar& cell, const Lanes& bottom, const Lanes& top, const Mask& met) const {
     Intervals range{cell.first_interval, cell.last_interval};
-    // Finding out which are met costs as much as passing about so many.
-    constexpr int few_intervals = 3;
-    if (range.last - range.first > few_intervals) {
-      constexpr float rounding = 1e-6F;
-      const int first = find(smallest(select(met, bottom, Lanes(1.0F))) + cell.reference - rounding);
-      const int last = find(largest(select(met, top, Lanes(-1.0F))) + cell.reference + rounding);
-      range.first = range.first > first ? range.first : first;
-      range.last = range.last < last ? range.last : last;
+    // Few cells touch more: so far nothing need be guessed.
+    if (range.last - range.first > 1) {
+      // Finding out roughly costs as much as asking at so many knots.
+      constexpr int few_knots = 4;
+      if (range.last - range.first > few_knots) {
+        constexpr float rounding = 1e-6F;
+        const int first = find(smallest(select(met, bottom, Lanes(1.0F))) + cell.reference - rounding);
+        const int last = find(largest(select(met, top, Lanes(-1.0F))) + cell.reference + rounding);
+        range.first = range.first > first ? range.first : first;
+        range.last = range.last < last ? range.last : last;
+      }
+      const Intervals all = range;
+      for (int n = all.first + 1; n <= all.last; ++n) {
+        const Lanes knot(begin_of(interval(n), cell));
+        range.first += any(met & (bottom < knot)) ? 0 : 1;
+        range.last -= any(met & !(top < knot)) ? 0 : 1;
+      }
+      return range;
     }
+    // Where the cell touches one interval only, all lie below the next one.
+    const Lanes knot(begin_of(interval(range.first + 1), cell));
+    const int above = any(met & !(top < knot)) ? 1 : 0;
+    range.last = range.first + above;
+    range.first += any(met & (bottom < knot)) ? 0 : 1;
     return range;
   }
 
@@ -72,7 +112,7 @@ class MappedCells : public BlockOptics {
     const float place = scalar * static_cast<float>(map_grid_size);
     const float last = static_cast<float>(map_grid_size - 1);
     int n = optics_.map_grid[static_cast<int>(place > 0.0F ? (place < last ? place : last) : 0.0F)];
-    while (n + 1 < optics_.map_intervals && scalar >= optics_.map[n + 1].begin) ++n;
+    while (scalar >= optics_.map[n + 1].begin) ++n;
     return n;
   }
 };
@@ -84,26 +124,30 @@ class MappedEndsIntegrator : public MappedCells {
   MappedEndsIntegrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
       : MappedCells(view, optics, block, pixels), rule_(optics) {}
 
-  void compose(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Light& light) const {
+  void lay(std::uint32_t number, const Prepared& s, Light& light) const {
     const CellScalar& cell = scalars_[number];
-    const Segment s = segment(cell, u_in, u_out);
-    const Intervals range = intervals(cell, min(s.s_in, s.s_out), max(s.s_in, s.s_out), u_in < u_out);
+    const Intervals range = s.range;
     const MapInterval* map = &interval(range.first);
     const float begin = begin_of(*map, cell);
-    Rgba near_end = color_at(*map, s.s_in - Lanes(begin));
-    Rgba far_end = color_at(*map, s.s_out - Lanes(begin));
+    const Lanes s_in = s.middle - s.half;
+    const Lanes s_out = s.middle + s.half;
+    Rgba near_end = color_at(*map, s_in - Lanes(begin));
+    Rgba far_end = color_at(*map, s_out - Lanes(begin));
     for (int n = range.first + 1; n <= range.last; ++n) {
       map = &interval(n);
       const Lanes next(begin_of(*map, cell));
-      const Mask near_below = s.s_in < next;
-      const Mask far_below = s.s_out < next;
-      const Rgba near_color = color_at(*map, s.s_in - next);
-      const Rgba far_color = color_at(*map, s.s_out - next);
+      const Mask near_below = s_in < next;
+      const Mask far_below = s_out < next;
+      const Rgba near_color = color_at(*map, s_in - next);
+      const Rgba far_color = color_at(*map, s_out - next);
       for (int k = 0; k < 4; ++k) {
         near_end.channel[k] = select(near_below, near_end.channel[k], near_color.channel[k]);
         far_end.channel[k] = select(far_below, far_end.channel[k], far_color.channel[k]);
       }
     }
+    // However small, a negative opacity would shine where extinction is large.
+    near_end.channel[3] = max(near_end.channel[3], Lanes(0.0F));
+    far_end.channel[3] = max(far_end.channel[3], Lanes(0.0F));
     rule_.add(near_end, far_end, s.length, light);
   }
 
@@ -116,19 +160,15 @@ class MappedSamplesIntegrator : public MappedCells {
  public:
   using MappedCells::MappedCells;
 
-  void compose(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Light& light) const {
-    const CellScalar& cell = scalars_[number];
-    const Segment s = segment(cell, u_in, u_out);
-    light = add_all(cell, intervals(cell, min(s.s_in, s.s_out), max(s.s_in, s.s_out), u_in < u_out), s, light);
-  }
+  void lay(std::uint32_t number, const Prepared& s, Light& light) const { light = add_all(scalars_[number], s, light); }
 
  private:
-  __attribute__((noinline, flatten)) Light add_all(const CellScalar& cell, Intervals range, Segment s,
-                                                   Light light) const {
+  __attribute__((noinline, flatten)) Light add_all(const CellScalar& cell, const Prepared& s, Light light) const {
+    const Intervals range = s.range;
     const float step = 1.0F / static_cast<float>(optics_.samples);
     const Lanes step_length = s.length * Lanes(step);
     for (int i = 0; i < optics_.samples; ++i) {
-      const Lanes here = multiply_add(Lanes((static_cast<float>(i) + 0.5F) * step), s.s_out - s.s_in, s.s_in);
+      const Lanes here = multiply_add(Lanes((static_cast<float>(2 * i + 1) * step) - 1.0F), s.half, s.middle);
       Rgba color = color_at(interval(range.first), here - Lanes(begin_of(interval(range.first), cell)));
       for (int n = range.first + 1; n <= range.last; ++n) {
         const Lanes begin(begin_of(interval(n), cell));
@@ -136,7 +176,7 @@ class MappedSamplesIntegrator : public MappedCells {
         const Rgba other = color_at(interval(n), here - begin);
         for (int k = 0; k < 4; ++k) color.channel[k] = select(below, color.channel[k], other.channel[k]);
       }
-      absorb(color, opacity_of(color.channel[3] * step_length), light);
+      absorb(color, opacity_of(max(color.channel[3], Lanes(0.0F)) * step_length), light);
     }
     return light;
   }
@@ -147,100 +187,103 @@ class MappedIntegrator : public MappedCells {
  public:
   using MappedCells::MappedCells;
 
-  void compose(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Light& light) const {
+  void lay(std::uint32_t number, const Prepared& s, Light& light) const {
     const CellScalar& cell = scalars_[number];
-    const Segment s = segment(cell, u_in, u_out);
-    if (cell.first_interval == cell.last_interval) {
-      add_within(cell, s, light);
-    } else if (any(s.length > Lanes(optics::thin_limit))) {
-      light = add_across<false>(cell, s, u_in < u_out, light);
+    if (s.range.first == s.range.last) {
+      const MapInterval& map = interval(s.range.first);
+      const Lanes place = s.middle - Lanes(begin_of(map, cell));
+      if (s.thin) {
+        add_piece<true>(map, place, s.half, s.length, light);
+      } else {
+        add_piece<false>(map, place, s.half, s.length, light);
+      }
+    } else if (s.thin) {
+      add_across<true>(cell, s, light);
     } else {
-      light = add_across<true>(cell, s, u_in < u_out, light);
+      add_across<false>(cell, s, light);
     }
   }
 
  private:
-  // Adds light of which `taken` has the colour of the interval's beginning, changed as far as `place` says.
-  static void lay(const MapInterval& interval, const Lanes& taken, const Lanes& place, Light& light) {
+  // A piece within one interval: the scalar in its middle, from where the interval begins, and half of what it changes
+  // by. Of no length it adds nothing.
+  template <bool thin>
+  static void add_piece(const MapInterval& map, const Lanes& middle, const Lanes& half, const Lanes& length,
+                        Light& light) {
+    const Lanes opacity_slope(map.slope[3]);
+    const Lanes mean = max(multiply_add(middle, opacity_slope, Lanes(map.first[3])), Lanes(0.0F)) * length;
+    const Lanes half_difference = half * length * opacity_slope;
+    const optics::CenteredPiece<Lanes> piece =
+        thin ? optics::integrate_thin_centered(mean, half_difference) : integrate_centered(mean, half_difference);
+    const Lanes taken = light.through * piece.opacity;
+    const Lanes place = multiply_add(taken, middle, light.through * piece.skew * half);
+    // Light of which `taken` has the colour of the interval's beginning, changed as far as `place` says.
     Lanes* const gathered[3] = {&light.red, &light.green, &light.blue};
     for (int k = 0; k < 3; ++k) {
-      *gathered[k] =
-          multiply_add(taken, Lanes(interval.first[k]), multiply_add(place, Lanes(interval.slope[k]), *gathered[k]));
+      *gathered[k] = multiply_add(taken, Lanes(map.first[k]), multiply_add(place, Lanes(map.slope[k]), *gathered[k]));
     }
-  }
-
-  // A segment of a cell that touches one interval only.
-  void add_within(const CellScalar& cell, const Segment& s, Light& light) const {
-    const MapInterval& map = interval(cell.first_interval);
-    const Lanes begin(begin_of(map, cell));
-    const Lanes near_place = s.s_in - begin;
-    const Lanes far_place = s.s_out - begin;
-    const Lanes zero(0.0F);
-    const Lanes first_opacity(map.first[3]);
-    const Lanes opacity_slope(map.slope[3]);
-    const Lanes density_near = max(multiply_add(near_place, opacity_slope, first_opacity), zero) * s.length;
-    const Lanes density_far = max(multiply_add(far_place, opacity_slope, first_opacity), zero) * s.length;
-    const Lanes half_difference = (density_far - density_near) * Lanes(0.5F);
-    const optics::Piece<Lanes> piece = integrate(density_near + half_difference, density_near, half_difference);
-    const Lanes taken = light.through * piece.opacity;
-    const Lanes place = multiply_add(taken, near_place, light.through * piece.ramp * (far_place - near_place));
-    lay(map, taken, place, light);
     take(taken, light);
   }
 
-  // A segment that passes several intervals, taken upwards whichever way the scalar goes: where it falls each
-  // interval's light is laid before that of those below, where it rises behind. Intervals that a lane does not touch
-  // leave it as it is. `thin`: no lane's optical depth may exceed thin_limit.
+  // Segments of which some pass several intervals. Whatever others pass, those that lie in one interval get what
+  // lay() would add of them alone.
   template <bool thin>
-  Light add_across(const CellScalar& cell, Segment s, Mask met, Light light) const {
+  void add_across(const CellScalar& cell, const Prepared& s, Light& light) const {
+    const Mask falls = s.half < Lanes(0.0F);
+    const Mask met = s.length > Lanes(0.0F);
+    if (any(met & !falls)) add_parts<true, thin>(cell, s, select(falls, Lanes(0.0F), s.length), light);
+    if (any(met & falls)) add_parts<false, thin>(cell, s, select(falls, s.length, Lanes(0.0F)), light);
+  }
+
+  // The segments along which the scalar rises, or those along which it falls; of the others `length` is zero. What
+  // lies below each knot tells how much lies between two.
+  template <bool up, bool thin>
+  void add_parts(const CellScalar& cell, const Prepared& s, const Lanes& length, Light& light) const {
     const Lanes zero(0.0F);
-    const Lanes one(1.0F);
-    const Lanes bottom = min(s.s_in, s.s_out);
-    // A scalar that does not change gets a range to spread over: a rounding's worth.
-    const float below = cell.reference - cell.low;
-    const float above = cell.high - cell.reference;
-    const float least = (below > above ? below : above) * 0x1p-22F + 1e-25F;
-    const Lanes top = max(max(s.s_in, s.s_out), bottom + Lanes(least));
-    const Intervals range = intervals(cell, bottom, top, met);
-    const Mask falls = s.s_out < s.s_in;
-    const Lanes half_way = select(falls, Lanes(-0.5F), Lanes(0.5F));
-    const Lanes per_rise = s.length / (top - bottom);
-    Light here;
-    Lanes begin(begin_of(interval(range.first), cell));
-    for (int n = range.first; n <= range.last; ++n) {
-      const MapInterval& map = interval(n);
-      const Lanes end(n == range.last ? 3e38F : begin_of(interval(n + 1), cell));
-      const Lanes from = n == range.first ? bottom : max(bottom, begin);
-      const Lanes to = min(top, end);
-      const Lanes part = max(to - from, zero) * per_rise;
-      const Lanes low_place = from - begin;
-      const Lanes high_place = to - begin;
-      begin = end;
-      const Lanes opacity_slope(map.slope[3]);
-      const Lanes first_opacity(map.first[3]);
-      const Lanes density_low = part * max(multiply_add(low_place, opacity_slope, first_opacity), zero);
-      const Lanes density_high = part * max(multiply_add(high_place, opacity_slope, first_opacity), zero);
-      const Lanes mean = Lanes(0.5F) * (density_low + density_high);
-      const Lanes half_difference = half_way * (density_high - density_low);
-      const optics::Piece<Lanes> piece =
-          thin ? optics::integrate_thin_piece(mean, half_difference)
-               : integrate(mean, select(falls, density_high, density_low), half_difference);
-      const Lanes low_weight = select(falls, piece.ramp, piece.opacity - piece.ramp);
-      const Lanes high_weight = piece.opacity - low_weight;
-      const Lanes before = select(falls, one, here.through);
-      const Lanes kept = select(falls, one - piece.opacity, one);
-      here.red = kept * here.red;
-      here.green = kept * here.green;
-      here.blue = kept * here.blue;
-      lay(map, before * piece.opacity, before * multiply_add(low_weight, low_place, high_weight * high_place), here);
-      take(here.through * piece.opacity, here);
+    const Lanes reach = magnitude(s.half);
+    const Lanes bottom = s.middle - reach;
+    const Lanes top = s.middle + reach;
+    const Intervals range = s.range;
+    // Length and half change up to the knot that was met last.
+    Lanes old_length = up ? zero : length;
+    Lanes old_half = up ? zero : s.half;
+    Lanes begin(begin_of(interval(up ? range.first : range.last), cell));
+    Lanes end = begin;
+    Mask passes_begin = zero < zero;
+    Mask passes_end = passes_begin;
+    for (int n = up ? range.first : range.last; up ? n <= range.last : n >= range.first; n += up ? 1 : -1) {
+      const bool at_last = n == (up ? range.last : range.first);
+      Lanes new_length = up ? length : zero;
+      Lanes new_half = up ? s.half : zero;
+      Mask passes = zero < zero;
+      if (!at_last) {
+        const Lanes knot = up ? Lanes(begin_of(interval(n + 1), cell)) : begin;
+        const Lanes share = min(Lanes(0.5F) * (knot - bottom) / reach, Lanes(1.0F));
+        const Mask some = bottom < knot;
+        const Mask all = top < knot;
+        passes = some & !all;
+        new_length = select(all, length, select(some, share * length, zero));
+        new_half = select(all, s.half, select(some, share * s.half, zero));
+        if (up) end = knot;
+      }
+      (up ? passes_end : passes_begin) = passes;
+      const Lanes part_length = up ? new_length - old_length : old_length - new_length;
+      const Lanes half = up ? new_half - old_half : old_half - new_half;
+      const Lanes part_reach = magnitude(half);
+      const Lanes middle =
+          select(passes_begin, part_reach, select(passes_end, (end - begin) - part_reach, s.middle - begin));
+      add_piece<thin>(interval(n), middle, half, part_length, light);
+      old_length = new_length;
+      old_half = new_half;
+      if (up) {
+        begin = end;
+        passes_begin = passes;
+      } else {
+        end = begin;
+        passes_end = passes;
+        if (!at_last) begin = Lanes(begin_of(interval(n - 1), cell));
+      }
     }
-    light.red = multiply_add(light.through, here.red, light.red);
-    light.green = multiply_add(light.through, here.green, light.green);
-    light.blue = multiply_add(light.through, here.blue, light.blue);
-    light.covered = multiply_add(light.through, here.covered, light.covered);
-    light.through = light.through * here.through;
-    return light;
   }
 };
 

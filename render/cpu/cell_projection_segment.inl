@@ -46,14 +46,39 @@ static __attribute__((noinline, flatten)) optics::Piece<Lanes> with_dense(Lanes 
 // The closed form, of any optical depth.
 static inline optics::Piece<Lanes> integrate(const Lanes& mean, const Lanes& density_near,
                                              const Lanes& half_difference) {
-  optics::Piece<Lanes> result = optics::integrate_thin_piece(mean, half_difference);
+  const optics::Piece<Lanes> thin = optics::integrate_thin_piece(mean, half_difference);
+  Lanes opacity = thin.opacity;
+  Lanes ramp = thin.ramp;
   const Mask thick = mean > Lanes(optics::thin_limit);
   if (any(thick)) {
     const optics::Piece<Lanes> piece = optics::integrate_piece(mean, half_difference);
-    result = {select(thick, piece.opacity, result.opacity), select(thick, piece.ramp, result.ramp)};
-    if (any(mean > Lanes(optics::piece_limit))) result = with_dense(mean, density_near, half_difference, result);
+    opacity = select(thick, piece.opacity, opacity);
+    ramp = select(thick, piece.ramp, ramp);
+    if (any(mean > Lanes(optics::piece_limit))) {
+      const optics::Piece<Lanes> pieces = with_dense(mean, density_near, half_difference, {opacity, ramp});
+      opacity = pieces.opacity;
+      ramp = pieces.ramp;
+    }
   }
-  return result;
+  return {opacity, ramp};
+}
+
+// The same, of what optics::centered() makes of it.
+static inline optics::CenteredPiece<Lanes> integrate_centered(const Lanes& mean, const Lanes& half_difference) {
+  const optics::CenteredPiece<Lanes> thin = optics::integrate_thin_centered(mean, half_difference);
+  Lanes opacity = thin.opacity;
+  Lanes skew = thin.skew;
+  const Mask thick = mean > Lanes(optics::thin_limit);
+  if (any(thick)) {
+    // However small, an opacity that is negative at an end would shine where extinction is large.
+    const Lanes bounded = max(min(half_difference, mean), Lanes(0.0F) - mean);
+    optics::Piece<Lanes> piece = optics::integrate_piece(mean, bounded);
+    if (any(mean > Lanes(optics::piece_limit))) piece = with_dense(mean, mean - bounded, bounded, piece);
+    const optics::CenteredPiece<Lanes> whole = optics::centered(piece);
+    opacity = select(thick, whole.opacity, opacity);
+    skew = select(thick, whole.skew, skew);
+  }
+  return {opacity, skew};
 }
 
 class ClosedForm {

@@ -99,14 +99,25 @@ static inline void write_scalars(const View& view, const SetupInput& input, doub
   const Floats reference = to_floats(mean);
   const Floats base_c =
       to_floats((mean - to_doubles(reference)) + gx * (h * x - s.mx) + gy * (h * y - s.my) + gz * depth_error);
-  const Floats slope_a = to_floats(gx * across);
-  const Floats slope_b = to_floats(gy * -across);
-  const Floats slope_c = to_floats(view.perspective ? gz + gx * x + gy * y : gz);
+  const Floats slope_a = to_floats(gx * (0.5 * across));
+  const Floats slope_b = to_floats(gy * (-0.5 * across));
+  const Floats slope_c = to_floats(0.5 * (view.perspective ? gz + gx * x + gy * y : gz));
+  // What rounding is a share of: the largest terms, anywhere in the cell, and what a rounded depth is worth.
+  const auto size = [](const Floats& v) { return v < 0.0F ? -v : v; };
+  const Floats extent = to_floats(s.extent);
+  const Floats pixels = to_floats(2.0 * s.extent / (h * view.pixel));
+  const Floats steepest = 2.0F * (pixels * (size(slope_a) + size(slope_b)) + size(slope_c));
+  const Floats reach =
+      pixels * (size(base_a) + size(base_b)) + size(base_c) + steepest * (extent + size(depth) * (1.0F / 64.0F));
+  // One that reaches to the eye's level may be seen in any number of pixels.
+  const Floats distance = view.perspective ? to_floats(s.mz) : 8.0F * extent + 1.0F;
+  const Ints tame = (reach <= 64.0F * (high - low) + 1e-6F) & (distance > 4.0F * extent);
   const Floats columns = to_floats(column);
   const Floats rows = to_floats(row);
   for (int l = 0; l < count; ++l) {
-    scalars[l] = {base_a[l], base_b[l], base_c[l], slope_a[l], slope_b[l],   slope_c[l], columns[l],
-                  rows[l],   depth[l],  low[l],    high[l],    reference[l], 0,          0};
+    scalars[l] = {base_a[l],  base_b[l],    base_c[l], slope_a[l], slope_b[l],
+                  slope_c[l], columns[l],   rows[l],   depth[l],   low[l],
+                  high[l],    reference[l], 0,         0,          tame[l] == 0 ? 1U : 0U};
   }
 }
 

@@ -245,6 +245,13 @@ inline float largest(const Lanes& a) {
 inline bool any(const Mask& mask) {
   return bits(mask) != 0;
 }
+inline Lanes magnitude(const Lanes& a) {
+#if defined(__AVX512F__)
+  return _mm512_abs_ps(a.v);
+#else
+  return max(a, Lanes(0.0F) - a);
+#endif
+}
 inline Lanes clamp(const Lanes& a, float low, float high) {
   return min(max(a, Lanes(low)), Lanes(high));
 }

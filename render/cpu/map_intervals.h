@@ -15,26 +15,28 @@ class MapIntervals {
   MapIntervals() = default;
   explicit MapIntervals(const ColorMap& map);
 
+  // size() intervals and one more, that no scalar reaches.
   const MapInterval* data() const { return intervals_.data(); }
-  std::size_t size() const { return intervals_.size(); }
+  std::size_t size() const { return intervals_.size() - 1; }
   // For each n the interval of n / map_grid_size, from which find() looks on.
   const std::uint16_t* grid() const { return grid_.data(); }
   // The interval a scalar lies in; of two that meet there, the upper.
   std::uint16_t find(float scalar) const {
     const float place = std::clamp(scalar * map_grid_size, 0.0F, map_grid_size - 1.0F);
     std::size_t n = grid_[static_cast<std::size_t>(place)];
-    while (n + 1 < intervals_.size() && scalar >= intervals_[n + 1].begin) ++n;
+    while (scalar >= intervals_[n + 1].begin) ++n;
     return static_cast<std::uint16_t>(n);
   }
   // Whether some intervals have no opacity throughout.
-  bool any_transparent() const { return opaque_before_.back() != static_cast<int>(intervals_.size()); }
+  bool any_transparent() const { return opaque_before_.back() != static_cast<int>(size()); }
   // Whether no scalar from `low` to `high` has any opacity.
   bool transparent(float low, float high) const {
     return opaque_before_[std::size_t{find(high)} + 1] == opaque_before_[find(low)];
   }
 
  private:
-  void add(double begin, const Vec4f& first, const Vec4f& slope);
+  // `densest`: the largest opacity in it.
+  void add(double begin, const Vec4f& first, const Vec4f& slope, float densest);
 
   std::vector<MapInterval> intervals_;
   std::vector<std::uint16_t> grid_;

@@ -82,6 +82,34 @@ inline Piece<F> integrate_thin_piece(F mean, F half_difference) {
   return {opacity, multiply_add(half_difference, multiply_add(half_difference, square, linear), even)};
 }
 
+// A piece's light from the colours' mean and half their difference, far minus near: opacity · mean + skew · half.
+template <class F>
+struct CenteredPiece {
+  F opacity;  // 1 - T1
+  F skew;     // 2 (ψ - T1) - (1 - T1)
+};
+
+template <class F>
+inline CenteredPiece<F> centered(const Piece<F>& piece) {
+  return {piece.opacity, multiply_add(piece.ramp, F(2.0F), F(0.0F) - piece.opacity)};
+}
+
+// integrate_thin_piece() of what centered() makes of it; weights of the two ends' colours are right to 1e-7, too.
+template <class F>
+inline CenteredPiece<F> integrate_thin_centered(F mean, F half_difference) {
+  F opacity = multiply_add(mean, F(-1.0F / 24.0F), F(1.0F / 6.0F));
+  opacity = multiply_add(mean, opacity, F(-0.5F));
+  opacity = multiply_add(mean, opacity, F(1.0F)) * mean;
+  F even = multiply_add(mean, F(-1.0F / 40.0F), F(1.0F / 12.0F));
+  even = multiply_add(mean, even, F(-1.0F / 6.0F)) * (mean * mean);
+  const F square =
+      multiply_add(half_difference, F(1.0F / 420.0F), multiply_add(mean, F(-1.0F / 60.0F), F(1.0F / 30.0F)));
+  F linear = multiply_add(mean, F(-1.0F / 90.0F), F(1.0F / 20.0F));
+  linear = multiply_add(mean, linear, F(-1.0F / 6.0F));
+  linear = multiply_add(mean, linear, F(1.0F / 3.0F));
+  return {opacity, multiply_add(half_difference, multiply_add(half_difference, square, linear), even)};
+}
+
 // How far a piece of optical depth 1 reaches from a point of density `density` (per unit of u) whose density grows by
 // 2·half_difference per unit of u: the root h of density·h + half_difference·h² = 1. Only asked where what is left of
 // the segment is denser than 1, so that the root exists.

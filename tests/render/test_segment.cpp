@@ -66,6 +66,32 @@ TEST(Segment, ThinPieceIsWithinATenMillionthOfQuadrature) {
   EXPECT_LE(worst, 1e-7);
 }
 
+TEST(Segment, ThinCenteredPieceIsWithinATenMillionthOfQuadrature) {
+  double worst = 0.0;
+  for (int m = 0; m <= 20; ++m) {
+    for (int d = -10; d <= 10; ++d) {
+      const double mean = m / 20.0 * static_cast<double>(thin_limit);
+      const double half_difference = mean * d / 10.0;
+      const Exact exact = quadrature(mean - half_difference, mean + half_difference);
+      const CenteredPiece<float> piece =
+          integrate_thin_centered(static_cast<float>(mean), static_cast<float>(half_difference));
+      const double near_weight = 0.5 * (static_cast<double>(piece.opacity) - static_cast<double>(piece.skew));
+      const double far_weight = 0.5 * (static_cast<double>(piece.opacity) + static_cast<double>(piece.skew));
+      worst = std::max({worst, std::abs(static_cast<double>(piece.opacity - (1 - exact.through))),
+                        std::abs(near_weight - static_cast<double>(1 - exact.psi)),
+                        std::abs(far_weight - static_cast<double>(exact.psi - exact.through))});
+    }
+  }
+  EXPECT_LE(worst, 1e-7);
+}
+
+TEST(Segment, CenteredIsTheSamePiece) {
+  const Piece<float> piece = integrate_piece(0.7F, -0.3F);
+  const CenteredPiece<float> same = centered(piece);
+  EXPECT_FLOAT_EQ(same.opacity, piece.opacity);
+  EXPECT_NEAR(0.5F * (same.opacity + same.skew), piece.ramp, 1e-7F);
+}
+
 TEST(Segment, AnyDensityIsWithinAMillionth) {
   for (const double near_density : {0.0, 1e-6, 1e-3, 0.3, 1.0, 2.5, 7.0, 30.0, 400.0}) {
     for (const double far_density : {0.0, 1e-6, 1e-3, 0.3, 1.0, 2.5, 7.0, 30.0, 400.0}) {
