@@ -22,6 +22,7 @@
 #include "app/cli/session.h"
 #include "app/cli/text_table.h"
 #include "app/cli/text_values.h"
+#include "app/gui/scalar_histogram.h"
 #include "core/camera.h"
 #include "core/error.h"
 #include "core/image.h"
@@ -58,6 +59,7 @@ struct RenderArguments {
   double tolerance = 0.0;
   bool transparent = false;
   std::vector<std::string> channels;
+  std::string histogram;
   LegendOptions legend;
   PictureOptions picture;
   bool help_parameters = false;
@@ -110,6 +112,7 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
       throw InputError(arguments.reference, 0, "does not exist; expected the picture to compare with");
     }
   }
+  if (!arguments.histogram.empty()) check_output(arguments.histogram, {".csv"});
   const auto [width, height] = parse_size(arguments.size);
   const Parameters parameters = chosen_parameters(arguments);
   const Renderer& renderer = find_renderer(arguments.renderer);
@@ -120,10 +123,16 @@ int run_render(const RenderArguments& arguments, const CLI::App& app, Session& s
     return std::chrono::duration<double, std::milli>(clock::now() - since).count();
   };
   const auto start = clock::now();
-  const LoadedMaterial loaded =
-      load_material(arguments.input, parts_needed(parameters), app, arguments.options, session, arguments.mesh);
+  MaterialParts parts = parts_needed(parameters);
+  if (!arguments.histogram.empty()) parts.tetrahedra = parts.defects = parts.fields = true;
+  const LoadedMaterial loaded = load_material(arguments.input, parts, app, arguments.options, session, arguments.mesh);
   for (const std::string& setting : arguments.settings) {
     check_species_key(setting.substr(0, setting.find('=')), loaded.material.atoms);
+  }
+
+  if (!arguments.histogram.empty()) {
+    gui::write_histogram_csv(arguments.histogram, gui::scalar_histogram(loaded.material, parameters.volume,
+                                                                        gui::default_bins, session.progress()));
   }
 
   const auto scene_start = clock::now();
@@ -208,6 +217,9 @@ Command add_render(CLI::App& app) {
   app.add_option("--channel", arguments->channels,
                  "Also write numbers per pixel: thickness (Å, mode xray), depth (Å) or id (modes surface, atoms)")
       ->type_name("NAME=FILE.npy");
+  app.add_option("--histogram", arguments->histogram,
+                 "Also count the scalars that mode volume shows, in 256 intervals: scalar and value from and to, count")
+      ->type_name("FILE.csv");
   add_legend_options(app, arguments->legend);
   add_picture_options(app, arguments->picture);
   app.add_option("--reference", arguments->reference,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
 
 #include "core/image.h"
 #include "tests/app/program.h"
@@ -152,6 +154,28 @@ TEST_F(RenderPicture, ALevelIsNotComparedWithItself) {
   const Outcome outcome = place->run(compared);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.err.find("they would always agree"), std::string::npos) << outcome.err;
+}
+
+TEST_F(RenderPicture, TheHistogramCountsEveryAtomInAnyMode) {
+  const auto counts = [](const std::string& name) {
+    std::istringstream text(place->read(name));
+    std::string line;
+    std::getline(text, line);
+    EXPECT_EQ(line, "scalar_from,scalar_to,value_from,value_to,count");
+    std::vector<std::uint64_t> all;
+    while (std::getline(text, line)) all.push_back(std::stoull(line.substr(line.rfind(',') + 1)));
+    return all;
+  };
+  const json report = render({"-o", "h.png", "--mode", "surface", "--size", "16x16", "--histogram", "h.csv"});
+  const auto all = counts("h.csv");
+  ASSERT_EQ(all.size(), 256U);
+  EXPECT_EQ(std::accumulate(all.begin(), all.end(), std::uint64_t{0}), report["atoms"].get<std::uint64_t>());
+  EXPECT_GT(all.back(), 0U);
+  // Weights count.
+  render({"-o", "h.png", "--mode", "volume", "--size", "16x16", "--set", "volume.vacancy_multiplier=0", "--histogram",
+          "other.csv"});
+  EXPECT_NE(counts("other.csv"), all);
+  EXPECT_EQ(place->run({"render", "d.crb", "-o", "h.png", "--histogram", "h.txt"}).exit_code, 1);
 }
 
 TEST_F(RenderPicture, ACancelLeavesNoFile) {
