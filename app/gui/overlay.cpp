@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "render/legend_drawing.h"
 #include "render/scene_parts.h"
@@ -29,14 +30,24 @@ class Pen {
   void draw(const OverlayParts& parts) {
     for (const MeasuredLine& measured : parts.lines) line(measured);
     for (const Mark& one : parts.marks) mark(one);
-    // Over all lines: none crosses out another's text.
+    // Marks have few places for their texts, lines more.
+    std::rotate(texts_.begin(), texts_.begin() + static_cast<std::ptrdiff_t>(lines_), texts_.end());
+    // Over all lines, and beside one another where there is room.
     for (const Text& one : texts_) text(one);
   }
 
  private:
+  struct Box {
+    CanvasPoint low;
+    CanvasPoint high;
+    double shared(const Box& other) const {
+      const CanvasPoint size = glm::min(high, other.high) - glm::max(low, other.low);
+      return size.x > 0.0 && size.y > 0.0 ? size.x * size.y : 0.0;
+    }
+  };
   struct Text {
     std::string text;
-    CanvasPoint at;
+    std::vector<CanvasPoint> places;  // where it may begin, on its baseline: the best first
     Vec4f color;
   };
 
@@ -58,8 +69,16 @@ class Pen {
         stroke(arm, false, mark.color);
       }
     }
+    taken_.push_back({*middle - reach, *middle + reach});
     if (mark.text.empty()) return;
-    texts_.push_back({mark.text, {middle->x + reach + 0.4 * size_, middle->y + 0.36 * size_}, mark.color});
+    const double beside = reach + 0.4 * size_;
+    const double width = width_of(mark.text);
+    const CanvasPoint level(middle->x, middle->y + 0.36 * size_);
+    texts_.push_back({mark.text,
+                      {level + CanvasPoint(beside, 0.0), level - CanvasPoint(beside + width, 0.0),
+                       level + CanvasPoint(-0.5 * width, beside + 0.5 * size_),
+                       level - CanvasPoint(0.5 * width, beside + 0.5 * size_)},
+                      mark.color});
   }
 
   void line(const MeasuredLine& measured) {
@@ -68,8 +87,14 @@ class Pen {
     if (!from || !to) return;
     const std::array<CanvasPoint, 2> ends{*from, *to};
     stroke(ends, false, pick_color);
-    const CanvasPoint middle = 0.5 * (*from + *to);
-    texts_.push_back({measured.text, {middle.x - 0.5 * width_of(measured.text), middle.y - 0.5 * size_}, pick_color});
+    const CanvasPoint middle = 0.5 * (*from + *to) - CanvasPoint(0.5 * width_of(measured.text), 0.0);
+    std::vector<CanvasPoint> places;
+    for (const double lines : {0.7, 1.7, 2.9, 4.1}) {
+      places.push_back(middle - CanvasPoint(0.0, lines * size_));
+      places.push_back(middle + CanvasPoint(0.0, (lines + 0.7) * size_));
+    }
+    texts_.push_back({measured.text, places, pick_color});
+    ++lines_;
   }
 
   void stroke(std::span<const CanvasPoint> points, bool closed, const Vec4f& color) const {
@@ -80,13 +105,24 @@ class Pen {
 
   double width_of(const std::string& text) const { return measure_text(text, size_).width; }
 
-  // Wholly in the picture where it has room. In the ink's colour with a line of the mark's below: letters in orange on
-  // white are hard to read.
-  void text(const Text& text) const {
+  // Wholly in the picture where it has room, and at the first of its places that hides least of what stands there. In
+  // the ink's colour with a line of the mark's below: letters in orange on white are hard to read.
+  void text(const Text& text) {
     const double width = width_of(text.text);
-    CanvasPoint at = text.at;
-    at.x = std::max(std::min(at.x, camera_.width - width - 0.3 * size_), 0.3 * size_);
-    at.y = std::max(std::min(at.y, camera_.height - 0.5 * size_), 1.1 * size_);
+    double least = std::numeric_limits<double>::infinity();
+    Box best{};
+    for (CanvasPoint at : text.places) {
+      at.x = std::max(std::min(at.x, camera_.width - width - 0.3 * size_), 0.3 * size_);
+      at.y = std::max(std::min(at.y, camera_.height - 0.5 * size_), 1.1 * size_);
+      const Box box{at - CanvasPoint(0.1 * size_, 0.85 * size_), at + CanvasPoint(width + 0.1 * size_, 0.45 * size_)};
+      double hidden = 0.0;
+      for (const Box& other : taken_) hidden += box.shared(other);
+      if (hidden >= least) continue;
+      least = hidden;
+      best = box;
+    }
+    taken_.push_back(best);
+    const CanvasPoint at = best.low + CanvasPoint(0.1 * size_, 0.85 * size_);
     draw_text_with_rim(canvas_, text.text, at.x, at.y, size_, colors_.ink, colors_.paper);
     const std::array<CanvasPoint, 2> under{CanvasPoint(at.x, at.y + 0.32 * size_),
                                            CanvasPoint(at.x + width, at.y + 0.32 * size_)};
@@ -98,6 +134,8 @@ class Pen {
   double size_;
   OverlayColors colors_;
   std::vector<Text> texts_;
+  std::size_t lines_ = 0;   // the first of them, that belong to lines
+  std::vector<Box> taken_;  // by rings, crosses and texts
 };
 
 // Radius of the atom's ball as mode atoms draws it, hidden or not.

@@ -147,7 +147,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Pick& pick, cons
     for (const Column& column : atoms.columns) {
       rows.emplace_back(column.name, fmt::format("{:.6g}", column.values[pick.atom]));
     }
-    rows.emplace_back("Neighbours", neighbours_text(pick, material));
+    rows.emplace_back("Neighbors", neighbours_text(pick, material));
   }
   if (pick.field) rows.emplace_back("Field", fmt::format("{:.6g}", *pick.field));
   if (pick.tetrahedron != no_index) rows.emplace_back("Tetrahedron", fmt::format("{}", pick.tetrahedron));

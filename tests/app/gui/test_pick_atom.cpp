@@ -190,7 +190,7 @@ TEST(Describe, SaysWhatIsKnown) {
   EXPECT_EQ(value("Vacancy defect"), "2");
   EXPECT_EQ(value("Defect"), "extra atom");
   EXPECT_EQ(value("charge"), "0.75");
-  EXPECT_NE(value("Neighbours").find(" at 2.8"), std::string::npos) << value("Neighbours");
+  EXPECT_NE(value("Neighbors").find(" at 2.8"), std::string::npos) << value("Neighbors");
   EXPECT_NE(value("Position").find(" Å"), std::string::npos);
   EXPECT_EQ(value("Tetrahedron"), "no such row");
 }
