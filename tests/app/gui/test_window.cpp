@@ -8,58 +8,21 @@
 #include <QSignalSpy>
 #include <QTest>
 
-#include "app/gui/main_window.h"
-#include "app/gui/viewport.h"
-#include "core/parameter_file.h"
-#include "render/renderer.h"
-#include "render/scene.h"
-#include "tests/app/gui/window_test.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/app/gui/window_fixture.h"
 
 namespace {
 
 using namespace atomesh;
 using namespace atomesh::gui;
+using test::all_modes;
 using test::child;
 using test::wait_for;
 
-constexpr std::array modes{Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
-
-class Window : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!test::has_opengl()) GTEST_SKIP() << "no display with OpenGL";
-    window = std::make_unique<MainWindow>();
-    window->resize(900, 640);
-    test::show(*window);
-  }
-
-  void open_salt() {
-    window->open(QString::fromStdString(test::cracked_salt_crb(folder.path().string())));
-    ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); }));
-  }
-  // What the command line draws of the same.
-  Image picture_of_cli() {
-    const Workspace& workspace = window->workspace();
-    const Material material = read_material(workspace.document()->path);
-    const Scene scene = make_scene(material, workspace.shown());
-    const Camera camera = make_camera(workspace.shown(), scene.bounds, workspace.width(), workspace.height());
-    RenderStats stats;
-    return render(find_renderer("cpu"), scene, camera, workspace.shown(), stats);
-  }
-  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    window->activateWindow();
-    ASSERT_TRUE(wait_for([&] { return window->isActiveWindow(); }));
-    QTest::keyClick(&window->viewport(), key, modifiers);
-  }
-
-  test::TemporaryFolder folder;
-  std::unique_ptr<MainWindow> window;
-};
+class Window : public test::WindowFixture {};
 
 TEST_F(Window, EveryModeShowsTheCommandLinesPicture) {
   open_salt();
-  for (const Mode mode : modes) {
+  for (const Mode mode : all_modes) {
     window->workspace().set("mode", std::string(mode_name(mode)));
     ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); })) << mode_name(mode);
     EXPECT_EQ(window->viewport().worker_picture()->parameters.mode, mode);
@@ -107,7 +70,7 @@ TEST_F(Window, KeysOfTheManual) {
   Workspace& workspace = window->workspace();
   for (int mode = 1; mode <= 5; ++mode) {
     press(Qt::Key_D);
-    EXPECT_EQ(workspace.parameters().mode, modes[static_cast<std::size_t>(mode % 5)]);
+    EXPECT_EQ(workspace.parameters().mode, all_modes[static_cast<std::size_t>(mode % 5)]);
   }
   const Shading before = workspace.parameters().shading;
   press(Qt::Key_S);
