@@ -140,6 +140,8 @@ void ColorMapEditor::build_table() {
                           QAbstractItemView::AnyKeyPressed);
   table_->setTabKeyNavigation(false);  // Tab goes on to the buttons
   table_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+  // A color cut off says nothing; numbers may be.
+  table_->horizontalHeader()->setSectionResizeMode(ColorMapTable::color, QHeaderView::ResizeToContents);
   table_->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
 
   const auto button = [this](const QString& text, const char* name, const QString& tip) {
