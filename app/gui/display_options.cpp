@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QSettings>
 #include <QSignalBlocker>
 #include <QSpinBox>
 #include <QToolButton>
@@ -43,9 +44,9 @@ DisplayOptions::DisplayOptions(Workspace& workspace, QWidget* parent) : QWidget(
   add_section(*layout, tr("Display"), QStringLiteral("Display"), keys_of_group("Display"));
   build_lights(*layout);
   build_cut_planes(*layout);
-  add_section(*layout, tr("View"), QStringLiteral("View"), keys_of_group("View"))->set_folded(true);
+  add_section(*layout, tr("View"), QStringLiteral("View"), keys_of_group("View"), true);
   build_overlay(*layout);
-  add_section(*layout, tr("Quality"), QStringLiteral("Quality"), keys_of_group("Quality"))->set_folded(true);
+  add_section(*layout, tr("Quality"), QStringLiteral("Quality"), keys_of_group("Quality"), true);
   layout->addStretch();
   auto* scroll = new QScrollArea(this);
   scroll->setWidget(content);
@@ -97,7 +98,7 @@ QToolButton* DisplayOptions::make_button(Section* section, const QString& text, 
 }
 
 Section* DisplayOptions::add_section(QVBoxLayout& layout, const QString& title, const QString& help,
-                                     const std::vector<std::string>& keys) {
+                                     const std::vector<std::string>& keys, bool folded) {
   auto* section = new Section(title, help, this);
   if (!keys.empty()) {
     section->add(make_form(section, keys));
@@ -106,6 +107,9 @@ Section* DisplayOptions::add_section(QVBoxLayout& layout, const QString& title, 
             [this, keys, title] { reset_parameters(workspace_, keys, tr("Reset %1").arg(title)); });
   }
   connect(section, &Section::help_requested, this, &DisplayOptions::help_requested);
+  const QString setting = QStringLiteral("display_options/folded/") + help;
+  section->set_folded(QSettings().value(setting, folded).toBool());
+  connect(section, &Section::folded_changed, this, [setting](bool now) { QSettings().setValue(setting, now); });
   layout.addWidget(section);
   return section;
 }

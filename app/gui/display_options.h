@@ -37,8 +37,9 @@ class DisplayOptions : public QWidget {
     ParameterForm* form = nullptr;
   };
   void build_buttons(QVBoxLayout& layout);
+  // Folded, or not, as it was left the last time.
   Section* add_section(QVBoxLayout& layout, const QString& title, const QString& help,
-                       const std::vector<std::string>& keys);
+                       const std::vector<std::string>& keys, bool folded = false);
   void build_lights(QVBoxLayout& layout);
   void build_cut_planes(QVBoxLayout& layout);
   void build_overlay(QVBoxLayout& layout);

@@ -61,7 +61,12 @@ MillerDialog::MillerDialog(Workspace& workspace, int n, QWidget* parent)
     connect(box, &NumberBox::entered, this, &MillerDialog::apply);
     connect(box, &NumberBox::stepped, this, &MillerDialog::apply);
   }
-  form->addRow(tr("(&h k l)"), indices);
+  const auto label = [this](const QString& text, QWidget* buddy) {
+    auto* made = new QLabel(text, this);
+    made->setBuddy(buddy);
+    return made;
+  };
+  form->addRow(label(tr("(&h k l)"), hkl_[0]), indices);
 
   auto* place = new QHBoxLayout;
   offset_->setObjectName(QStringLiteral("offset"));
@@ -74,7 +79,7 @@ MillerDialog::MillerDialog(Workspace& workspace, int n, QWidget* parent)
   place->addWidget(offset_);
   place->addWidget(unit_);
   place->addStretch();
-  form->addRow(tr("&Offset"), place);
+  form->addRow(label(tr("&Offset"), offset_), place);
   from_->setObjectName(QStringLiteral("from"));
   from_->addItem(tr("the middle of the sample"));
   from_->addItem(tr("the origin of the file's coordinates"));

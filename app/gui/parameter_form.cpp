@@ -52,8 +52,14 @@ void ParameterForm::set_keys(const std::vector<std::string>& keys, Labels labels
     row.label->show();
     row.field->show();
     update_row(row);
-    if (last != nullptr) setTabOrder(last, row.field);
-    last = row.field;
+    // Part by part: a field as a whole has no place of its own in the order.
+    QList<QWidget*> stops = row.field->findChildren<QWidget*>(QString(), Qt::FindDirectChildrenOnly);
+    stops << row.reset;
+    for (QWidget* stop : stops) {
+      if ((stop->focusPolicy() & Qt::TabFocus) == 0) continue;
+      if (last != nullptr) setTabOrder(last, stop);
+      last = stop;
+    }
     line += 2;
   }
 }

@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::array modes{Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
 // Rows of a search; more are read faster with another word.
-constexpr std::size_t most_found = 40;
+constexpr std::size_t most_found = 30;
 
 QScrollArea* scrolled(QWidget* content) {
   auto* scroll = new QScrollArea;

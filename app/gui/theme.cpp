@@ -34,6 +34,12 @@ bool has_session_bus() {
   return !folder.isEmpty() && QFileInfo::exists(folder + QStringLiteral("/bus"));
 }
 
+// As the platform's own palette said, before it was replaced by one of ours.
+bool platform_is_dark() {
+  static const bool dark = is_dark(QApplication::palette());
+  return dark;
+}
+
 struct Colors {
   const char* window;
   const char* base;
@@ -103,8 +109,7 @@ QColor error_color(const QPalette& palette) {
   return is_dark(palette) ? QColor("#ff9c94") : QColor("#a80f1a");
 }
 
-ThemeKeeper::ThemeKeeper(QObject* parent)
-    : QObject(parent), theme_(chosen_theme()), system_dark_(is_dark(QApplication::palette())) {
+ThemeKeeper::ThemeKeeper(QObject* parent) : QObject(parent), theme_(chosen_theme()), system_dark_(platform_is_dark()) {
   keeper() = this;
   QApplication::setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
   apply();
@@ -119,8 +124,10 @@ void ThemeKeeper::ask_portal() {
   if (!has_session_bus()) return;
   QDBusConnection bus = QDBusConnection::sessionBus();
   if (!bus.isConnected()) return;
+  // QtDBus matches the types of the signal with the slot's only once it has dealt with some; a whole message it takes
+  // as it is.
   bus.connect(service, object, interface, QStringLiteral("SettingChanged"), this,
-              SLOT(portal_setting_changed(QString, QString, QVariant)));
+              SLOT(portal_setting_changed(QDBusMessage)));
   QDBusMessage question = QDBusMessage::createMethodCall(service, object, interface, QStringLiteral("Read"));
   question << QString::fromLatin1(space) << QString::fromLatin1(scheme_key);
   auto* watcher = new QDBusPendingCallWatcher(bus.asyncCall(question), this);
@@ -135,9 +142,11 @@ void ThemeKeeper::ask_portal() {
   });
 }
 
-void ThemeKeeper::portal_setting_changed(const QString& of_space, const QString& key, const QVariant& value) {
-  if (of_space != QLatin1String(space) || key != QLatin1String(scheme_key)) return;
-  heard(value.canConvert<QDBusVariant>() ? value.value<QDBusVariant>().variant().toUInt() : value.toUInt());
+void ThemeKeeper::portal_setting_changed(const QDBusMessage& message) {
+  const QVariantList arguments = message.arguments();
+  if (arguments.size() < 3 || arguments[0].toString() != QLatin1String(space)) return;
+  if (arguments[1].toString() != QLatin1String(scheme_key)) return;
+  heard(arguments[2].value<QDBusVariant>().variant().toUInt());
 }
 
 void ThemeKeeper::heard(uint scheme) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QColor>
+#include <QDBusMessage>
 #include <QObject>
 #include <QPalette>
 
@@ -37,7 +38,7 @@ class ThemeKeeper : public QObject {
   void changed();
 
  private slots:
-  void portal_setting_changed(const QString& space, const QString& key, const QVariant& value);
+  void portal_setting_changed(const QDBusMessage& message);
 
  private:
   void ask_portal();

@@ -150,6 +150,7 @@ TEST_F(Options, MillerIndicesMakeAPlane) {
   EXPECT_NEAR(plane.normal.y, std::sqrt(0.5), 1e-12);
   // Two planes of d(110) = 2/√2 Å from the middle, (5, 5, 5).
   EXPECT_NEAR(plane.distance, 10.0 / std::sqrt(2.0) + 2.0 * std::sqrt(2.0), 1e-9);
+  test::keep_screenshot(dialog.grab().toImage(), "miller_dialog");
   enter(child<NumberBox>(dialog, "h"), "0");
   enter(child<NumberBox>(dialog, "k"), "0");
   EXPECT_TRUE(child<QLabel>(dialog, "says").text().startsWith("⚠"));
@@ -193,6 +194,23 @@ TEST_F(Options, WhatLiesOverThePictureIsChosen) {
   drawing.setFocus();
   QTest::keyClick(&drawing, Qt::Key_Down);
   EXPECT_EQ(workspace_.view_options().drawing, ViewOptions::Drawing::gpu);
+}
+
+TEST_F(Options, SectionsStayAsTheyWereLeft) {
+  EXPECT_FALSE(part<QWidget>("view.zoom").isVisible());
+  click("section View/fold");
+  click("section Display/fold");
+  EXPECT_TRUE(part<QWidget>("view.zoom").isVisible());
+  EXPECT_FALSE(part<QWidget>("mode").isVisible());
+  {
+    DisplayOptions next(workspace_, nullptr);
+    test::show(next);
+    EXPECT_TRUE(child<QWidget>(next, "view.zoom").isVisible());
+    EXPECT_FALSE(child<QWidget>(next, "mode").isVisible());
+  }
+  click("section View/fold");
+  click("section Display/fold");
+  EXPECT_TRUE(part<QWidget>("mode").isVisible());
 }
 
 TEST_F(Options, ButtonsAskForWhatTheWindowDoes) {

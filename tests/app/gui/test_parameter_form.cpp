@@ -1,6 +1,7 @@
 // Forms of the parameter table, driven as by a person: every kind of editor, undo and redo, errors at the field.
 #include <gtest/gtest.h>
 
+#include <QApplication>
 #include <QCheckBox>
 #include <QClipboard>
 #include <QColorDialog>
@@ -18,7 +19,6 @@
 #include "app/gui/parameter_field.h"
 #include "app/gui/parameter_form.h"
 #include "app/gui/parameter_hints.h"
-#include "app/gui/theme.h"
 #include "app/gui/workspace.h"
 #include "tests/app/gui/window_test.h"
 #include "tests/core/random_parameters.h"
@@ -276,6 +276,26 @@ TEST_F(Form, AValueIsCopiedAndPasted) {
   EXPECT_FALSE(form_.field("volume_surface.extra_color")->error().isEmpty());
 }
 
+TEST_F(Form, TabGoesThroughTheRowsInTheirOrder) {
+  const auto focus_is = [](const QWidget& widget) { return QApplication::focusWidget() == &widget; };
+  // In the form's first order, and in another.
+  for (const auto& keys : {std::vector<std::string>{"surface.shininess", "mode", "xray.alpha_length"},
+                           std::vector<std::string>{"xray.alpha_length", "surface.shininess", "mode"}}) {
+    form_.set_keys(keys);
+    QCoreApplication::processEvents();
+    QWidget& first = *form_.field(keys.front())->focusProxy();
+    first.setFocus();
+    for (const std::string& key : keys) {
+      EXPECT_TRUE(focus_is(*form_.field(key)->focusProxy())) << key;
+      if (parameter_row(key).type == ParameterType::real) {
+        QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+        EXPECT_TRUE(focus_is(part<QSlider>(key, "slider"))) << key;
+      }
+      QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+    }
+  }
+}
+
 TEST_F(Form, TheWheelChangesOnlyWhatHasTheFocus) {
   const auto turn = [](QWidget& widget) {
     QWheelEvent event(QPointF(5, 5), widget.mapToGlobal(QPointF(5, 5)), {}, {0, 120}, Qt::NoButton, Qt::NoModifier,
@@ -291,31 +311,6 @@ TEST_F(Form, TheWheelChangesOnlyWhatHasTheFocus) {
   part<NumberBox>("view.zoom", "box").setFocus();
   turn(part<NumberBox>("view.zoom", "box"));
   EXPECT_EQ(now("view.zoom"), "1.1");
-}
-
-TEST(Themes, AreReadable) {
-  const auto luminance = [](const QColor& color) {
-    const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
-    return 0.2126 * linear(color.redF()) + 0.7152 * linear(color.greenF()) + 0.0722 * linear(color.blueF());
-  };
-  const auto contrast = [&](const QColor& a, const QColor& b) {
-    const double la = luminance(a) + 0.05;
-    const double lb = luminance(b) + 0.05;
-    return std::max(la, lb) / std::min(la, lb);
-  };
-  for (const QPalette& palette : {light_palette(), dark_palette()}) {
-    // WCAG: 7 is AAA, 4.5 AA, 3 for what cannot be used now.
-    EXPECT_GT(contrast(palette.color(QPalette::WindowText), palette.color(QPalette::Window)), 7.0);
-    EXPECT_GT(contrast(palette.color(QPalette::Text), palette.color(QPalette::Base)), 7.0);
-    EXPECT_GT(contrast(palette.color(QPalette::ButtonText), palette.color(QPalette::Button)), 7.0);
-    EXPECT_GT(contrast(palette.color(QPalette::ToolTipText), palette.color(QPalette::ToolTipBase)), 7.0);
-    EXPECT_GT(contrast(palette.color(QPalette::HighlightedText), palette.color(QPalette::Highlight)), 4.5);
-    EXPECT_GT(contrast(palette.color(QPalette::Link), palette.color(QPalette::Base)), 4.5);
-    EXPECT_GT(contrast(error_color(palette), palette.color(QPalette::Window)), 4.5);
-    EXPECT_GT(contrast(palette.color(QPalette::Disabled, QPalette::WindowText), palette.color(QPalette::Window)), 3.0);
-  }
-  EXPECT_FALSE(is_dark(light_palette()));
-  EXPECT_TRUE(is_dark(dark_palette()));
 }
 
 }  // namespace
