@@ -12,7 +12,7 @@ bool parse_logical(std::string_view field, bool& value) {
 }
 
 void AtomRows::add_column(std::string name, std::uint64_t line, bool logical) {
-  if (atoms_.find_column(name) != nullptr) fail(input_, line, "every column once", quoted(name) + " twice");
+  if (atoms_.find_column(name) != nullptr) fail(input_, line, "every column once", in_quotes(name) + " twice");
   fields_.push_back({logical ? Role::logical : Role::real, atoms_.columns.size(), name});
   atoms_.columns.push_back({std::move(name), {}});
 }
@@ -77,7 +77,7 @@ void AtomRows::fail_row(std::string_view line, std::uint64_t line_number, const 
   const std::string_view kind = field.role == Role::id        ? "a whole number for "
                                 : field.role == Role::logical ? "T or F for "
                                                               : "a finite number for ";
-  fail(input_, line_number, std::string(kind) + field.name, quoted(text));
+  fail(input_, line_number, std::string(kind) + field.name, in_quotes(text));
 }
 
 }  // namespace atomesh::reading

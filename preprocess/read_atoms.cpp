@@ -40,7 +40,7 @@ const Format& format_named(std::string_view name) {
   std::string list;
   for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
   const std::string nearest = nearest_name(name, names);
-  throw UsageError("format " + reading::quoted(name) + ": expected one of " + list +
+  throw UsageError("format " + reading::in_quotes(name) + ": expected one of " + list +
                    (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
 }
 

@@ -156,7 +156,7 @@ class DatReader {
       const std::string expected =
           "basis atom " + std::to_string(i + 1) + " of " + std::to_string(count) + ", \"species x y z\"";
       const std::vector<std::string_view> fields = fields_of(block_line(expected), 4, expected);
-      if (is_dat_word(fields[0])) fail(input_, lines_.line_number(), expected, quoted(fields[0]));
+      if (is_dat_word(fields[0])) fail(input_, lines_.line_number(), expected, in_quotes(fields[0]));
       cell_.basis.push_back({std::string(fields[0]), vector_of(fields, 1)});
     }
   }
@@ -165,7 +165,7 @@ class DatReader {
     const std::vector<std::string_view> fields = fields_of(line, 3, "\"radius species r\"");
     const double radius = real_of(input_, lines_.line_number(), fields[2], "the radius");
     if (!(radius > 0.0)) fail(input_, lines_.line_number(), "a radius above 0", std::string(fields[2]));
-    if (is_dat_word(fields[1])) fail(input_, lines_.line_number(), "a species", quoted(fields[1]));
+    if (is_dat_word(fields[1])) fail(input_, lines_.line_number(), "a species", in_quotes(fields[1]));
     const std::uint16_t index = species_(fields[1], lines_.line_number());
     if (index >= radius_lines_.size()) radius_lines_.resize(std::size_t{index} + 1, 0);
     if (radius_lines_[index] != 0) {
@@ -185,7 +185,7 @@ class DatReader {
       const std::vector<std::string_view> fields = fields_of(block_line(expected), 4, expected);
       box.vectors[k] = vector_of(fields, 0);
       if (fields[3] != "periodic" && fields[3] != "open")
-        fail(input_, lines_.line_number(), expected, quoted(fields[3]));
+        fail(input_, lines_.line_number(), expected, in_quotes(fields[3]));
       box.periodic[k] = fields[3] == "periodic";
     }
     const LineReader before = lines_;

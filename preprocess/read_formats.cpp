@@ -11,7 +11,7 @@ void fail(const Input& input, std::uint64_t line, std::string_view expected, std
   throw InputError(input.path, line, "expected " + std::string(expected) + ", got " + std::string(got));
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
   std::string result = "\"";
   for (const char c : text.substr(0, longest)) {
@@ -32,13 +32,13 @@ std::string_view strip_comment(std::string_view line) {
 
 double real_of(const Input& input, std::uint64_t line, std::string_view field, std::string_view what) {
   double value = 0.0;
-  if (!parse_real(field, value)) fail(input, line, "a finite number for " + std::string(what), quoted(field));
+  if (!parse_real(field, value)) fail(input, line, "a finite number for " + std::string(what), in_quotes(field));
   return value;
 }
 
 std::int64_t integer_of(const Input& input, std::uint64_t line, std::string_view field, std::string_view what) {
   std::int64_t value = 0;
-  if (!parse_integer(field, value)) fail(input, line, "a whole number for " + std::string(what), quoted(field));
+  if (!parse_integer(field, value)) fail(input, line, "a whole number for " + std::string(what), in_quotes(field));
   return value;
 }
 

@@ -32,7 +32,7 @@ std::optional<UnitCell> read_dat_cell(const Input& input);
 // "FILE:LINE: expected EXPECTED, got GOT", as an InputError; `got` as it should read in the sentence.
 [[noreturn]] void fail(const Input& input, std::uint64_t line, std::string_view expected, std::string_view got);
 // Text of a file for a message: in quotes, cut after 60 characters, nothing unprintable.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 // "3 fields", "1 field".
 std::string count_of(std::size_t count, std::string_view noun);
 // The line without a "#" comment.

@@ -100,7 +100,7 @@ class DataReader {
           start_section(line);
           return;
         }
-        fail(input_, lines_.line_number(), "a line of the header or a section", quoted(line));
+        fail(input_, lines_.line_number(), "a line of the header or a section", in_quotes(line));
       }
       read_header_line(fields);
     }
@@ -132,7 +132,7 @@ class DataReader {
         if (ends_with(2, {axis + "lo", axis + "hi"})) {
           low_[k] = number(0);
           high_[k] = number(1);
-          if (!(high_[k] >= low_[k])) fail(input_, line, axis + "hi not below " + axis + "lo", quoted(fields[1]));
+          if (!(high_[k] >= low_[k])) fail(input_, line, axis + "hi not below " + axis + "lo", in_quotes(fields[1]));
           box_line_ = line;
         }
         if (ends_with(3, {std::string(1, static_cast<char>('a' + k)) + "vec"})) {
@@ -188,7 +188,7 @@ class DataReader {
         if (skipped_sections_.size() < 20) skipped_sections_.push_back(section_);
       } else if (is_read(section_)) {
         fail(input_, lines_.line_number(), "the end of section " + section_ + " after as many lines as the header says",
-             quoted(line));
+             in_quotes(line));
       }
     }
   }
@@ -251,7 +251,7 @@ class DataReader {
       if (const AtomStyle* style = style_named(section_comment_)) return *style;
       std::string names;
       for (const AtomStyle& style : styles) names += (names.empty() ? "" : ", ") + std::string(style.name);
-      fail(input_, section_start_, "an atom style of " + names, quoted(section_comment_));
+      fail(input_, section_start_, "an atom style of " + names, in_quotes(section_comment_));
     }
     const auto whole = [&first](std::size_t i) {
       std::int64_t ignored = 0;
@@ -348,7 +348,7 @@ class DataReader {
       if (known(atoms.species_table[s].name)) continue;
       const auto at = std::find(atoms.species.begin(), atoms.species.end(), s) - atoms.species.begin();
       fail(input_, line_of_atom(static_cast<std::size_t>(at)), "an atom type from 1 to " + std::to_string(types_),
-           quoted(atoms.species_table[s].name));
+           in_quotes(atoms.species_table[s].name));
     }
   }
 

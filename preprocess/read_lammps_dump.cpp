@@ -90,7 +90,7 @@ class DumpReader {
       if (!begun && (first.empty() || is_remark(first, line))) continue;
       begun = true;
       constexpr std::string_view items = "\"ITEM: TIMESTEP\", NUMBER OF ATOMS, BOX BOUNDS or ATOMS";
-      if (!take(item, "ITEM: ")) fail(input_, lines_.line_number(), items, quoted(line));
+      if (!take(item, "ITEM: ")) fail(input_, lines_.line_number(), items, in_quotes(line));
       if (take(item, "TIMESTEP")) {
         constexpr std::string_view expected = "the timestep";
         const std::string_view field = only_field(line_of(expected));
@@ -111,7 +111,7 @@ class DumpReader {
         finish_header(header, item);
         return true;
       } else {
-        fail(input_, lines_.line_number(), items, quoted(line));
+        fail(input_, lines_.line_number(), items, in_quotes(line));
       }
     }
     if (begun) fail(input_, lines_.line_number(), "a frame with its ITEM: ATOMS", "the end of the file");
@@ -128,7 +128,7 @@ class DumpReader {
     if (std::count_if(fields.begin(), fields.end(), is_number) >= 3) return false;
     if (result_.report.skipped++ == 0) {
       note("Text behind a frame is not used, first on line " + std::to_string(lines_.line_number()) + ": " +
-           quoted(line) + ".");
+           in_quotes(line) + ".");
     }
     return true;
   }
@@ -206,11 +206,11 @@ class DumpReader {
       const std::vector<std::string_view> fields = split_fields(header.bound_lines[k]);
       // Some programs write a tilt of 0 behind the bounds of an orthogonal box.
       if (fields.size() < columns) {
-        fail(input_, line, count_of(columns, "number") + " of the box bounds", quoted(header.bound_lines[k]));
+        fail(input_, line, count_of(columns, "number") + " of the box bounds", in_quotes(header.bound_lines[k]));
       }
       for (std::size_t c = 0; c < columns; ++c) rows[k][c] = real_of(input_, line, fields[c], "the box bounds");
       if (!general && !(rows[k][1] >= rows[k][0]))
-        fail(input_, line, "an upper bound not below the lower", quoted(header.bound_lines[k]));
+        fail(input_, line, "an upper bound not below the lower", in_quotes(header.bound_lines[k]));
     }
     if (general) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -232,7 +232,7 @@ class DumpReader {
     } else if (words.empty()) {
       note("The dump does not say which axes are periodic; all three are taken to be.");
     } else {
-      fail(input_, header.bounds_line, "three boundary flags such as \"pp pp ff\"", quoted(header.bounds));
+      fail(input_, header.bounds_line, "three boundary flags such as \"pp pp ff\"", in_quotes(header.bounds));
     }
     check_box(input_, header.bounds_line, result_.atoms, result_.report);
   }
@@ -251,7 +251,7 @@ class DumpReader {
       }
       if (sources[k].empty()) {
         fail(input_, header.columns_line, "a column " + axis + ", " + axis + "s, " + axis + "u or " + axis + "su",
-             quoted(header.columns));
+             in_quotes(header.columns));
       }
       scaled_[k] = sources[k].find('s') != std::string::npos;
     }
@@ -263,7 +263,7 @@ class DumpReader {
       const bool again = std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(c), names[c]) !=
                          names.begin() + static_cast<std::ptrdiff_t>(c);
       double number = 0.0;
-      if (again) fail(input_, header.columns_line, "every column once", quoted(name) + " twice");
+      if (again) fail(input_, header.columns_line, "every column once", in_quotes(name) + " twice");
       if (axis != sources.end()) {
         rows.add_position(static_cast<std::size_t>(axis - sources.begin()), name);
       } else if (name == species) {

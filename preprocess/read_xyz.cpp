@@ -47,7 +47,7 @@ FrameIndex index_frames(const Input& input) {
       const std::uint64_t count_line = lines.line_number();
       constexpr std::string_view expected = "the number of atoms of a frame";
       std::int64_t declared = 0;
-      if (fields.size() != 1 || !parse_integer(fields[0], declared)) fail(input, count_line, expected, quoted(line));
+      if (fields.size() != 1 || !parse_integer(fields[0], declared)) fail(input, count_line, expected, in_quotes(line));
       const std::size_t atoms =
           checked_count(input, count_line, declared, input.text.size() - lines.offset(), 1, "atom");
       for (std::size_t i = 0; i <= atoms; ++i) {
@@ -118,7 +118,7 @@ class FrameReader {
       const std::vector<std::string_view> parts = split_fields(*pbc);
       bool good = parts.size() == 3;
       for (std::size_t k = 0; k < 3 && good; ++k) good = parse_logical(parts[k], box.periodic[k]);
-      if (!good) fail(input_, line_number(), "pbc=\"T T F\" or the like", quoted(*pbc));
+      if (!good) fail(input_, line_number(), "pbc=\"T T F\" or the like", in_quotes(*pbc));
     }
     check_box(input_, line_number(), result_.atoms, result_.report);
   }
@@ -144,7 +144,7 @@ class FrameReader {
       }
     }
     if (parts.size() % 3 != 0) {
-      fail(input_, line_number(), "Properties as name:type:count three by three", quoted(properties));
+      fail(input_, line_number(), "Properties as name:type:count three by three", in_quotes(properties));
     }
     bool has_species = false;
     bool has_position = false;
@@ -153,11 +153,11 @@ class FrameReader {
       const std::string& name = parts[p];
       const std::string kind = parts[p + 1] + ":" + parts[p + 2];
       if (name == "species" && !has_species) {
-        if (kind != "S:1") fail(input_, line_number(), "species:S:1", quoted(name + ":" + kind));
+        if (kind != "S:1") fail(input_, line_number(), "species:S:1", in_quotes(name + ":" + kind));
         rows.add_species();
         has_species = true;
       } else if (name == "pos" && !has_position) {
-        if (kind != "R:3") fail(input_, line_number(), "pos:R:3", quoted(name + ":" + kind));
+        if (kind != "R:3") fail(input_, line_number(), "pos:R:3", in_quotes(name + ":" + kind));
         for (std::size_t k = 0; k < 3; ++k) rows.add_position(k, std::string(1, "xyz"[k]));
         has_position = true;
       } else if (name == "id" && kind == "I:1" && !has_id) {
@@ -175,11 +175,11 @@ class FrameReader {
     std::int64_t count = 0;
     // A thousand numbers an atom are more than any program writes, and keep a typing error from filling memory.
     if (!parse_integer(count_text, count) || count < 1 || count > 1000) {
-      fail(input_, line_number(), "a count from 1 to 1000 for property " + quoted(name), quoted(count_text));
+      fail(input_, line_number(), "a count from 1 to 1000 for property " + in_quotes(name), in_quotes(count_text));
     }
     if (name.empty() || type.size() != 1 || std::string_view("SRIL").find(type[0]) == std::string_view::npos) {
       fail(input_, line_number(), "name:type:count with type S, R, I or L",
-           quoted(name + ":" + type + ":" + count_text));
+           in_quotes(name + ":" + type + ":" + count_text));
     }
     if (type == "S") note("Property " + name + " is text; it is left out.");
     for (std::int64_t i = 1; i <= count; ++i) {

@@ -49,7 +49,7 @@ std::string script(const std::string& data, double cutoff, int neighbours, int c
   return text;
 }
 
-std::string quoted(const std::string& path) {
+std::string in_quotes(const std::string& path) {
   std::string out = "'";
   for (const char c : path) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out + "'";
@@ -72,8 +72,8 @@ std::optional<LammpsTimes> time_lammps(const std::string& lmp, const Atoms& atom
   const TemporaryFolder folder;
   write_data(folder.file("atoms.data"), atoms);
   std::ofstream(folder.file("in.bench")) << script(folder.file("atoms.data"), cutoff, neighbours, calls);
-  const std::string command = fmt::format("OMP_NUM_THREADS=1 {} -in {} -log none 2>&1 </dev/null", quoted(lmp),
-                                          quoted(folder.file("in.bench")));
+  const std::string command = fmt::format("OMP_NUM_THREADS=1 {} -in {} -log none 2>&1 </dev/null", in_quotes(lmp),
+                                          in_quotes(folder.file("in.bench")));
   FILE* output = popen(command.c_str(), "r");
   if (output == nullptr) {
     why = "it could not be started";
