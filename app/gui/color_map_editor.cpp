@@ -14,6 +14,7 @@
 #include <QSpinBox>
 #include <QTableView>
 #include <QVBoxLayout>
+#include <utility>
 
 #include "app/gui/color_map_canvas.h"
 #include "app/gui/color_map_painting.h"
@@ -296,8 +297,9 @@ void ColorMapEditor::show_parameters() {
   const auto text = [](const std::optional<double>& value) {
     return value ? QString::fromStdString(real_text(*value)) : QString();
   };
-  range_low_->setText(text(volume.range_low));
-  range_high_->setText(text(volume.range_high));
+  for (const auto& [line, value] : {std::pair(range_low_, volume.range_low), {range_high_, volume.range_high}}) {
+    if (!line->hasFocus() || !line->isModified()) line->setText(text(value));  // not while it is typed
+  }
 }
 
 void ColorMapEditor::show_histogram() {
