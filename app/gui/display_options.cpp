@@ -262,6 +262,10 @@ void DisplayOptions::build_overlay(QVBoxLayout& layout) {
   theme->setToolTip(tr("Colors of menus and docks"));
   theme->setCurrentIndex(static_cast<int>(chosen_theme()));
   form->addRow(tr("&Menu color"), theme);
+  if (const ThemeKeeper* keeper = ThemeKeeper::instance()) {  // it can be chosen elsewhere too
+    connect(keeper, &ThemeKeeper::changed, theme,
+            [theme] { theme->setCurrentIndex(static_cast<int>(chosen_theme())); });
+  }
   connect(theme, &QComboBox::activated, this, [](int index) {
     if (ThemeKeeper* keeper = ThemeKeeper::instance()) keeper->choose(static_cast<Theme>(index));
   });

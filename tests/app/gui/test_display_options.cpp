@@ -246,7 +246,9 @@ TEST_F(Options, TheThemeIsChosenAndKept) {
   // Nothing is wider than the dock, beside a scroll bar.
   EXPECT_LE(child<QWidget>(options_, "section Lights").parentWidget()->minimumSizeHint().width(), 400);
   test::keep_screenshot(options_.grab().toImage(), "display_options_light");
+  DisplayOptions later(workspace_, nullptr);
   keeper.choose(Theme::system);
+  EXPECT_EQ(child<QComboBox>(later, "theme").currentIndex(), static_cast<int>(Theme::system));
 }
 
 }  // namespace
