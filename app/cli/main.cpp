@@ -1,8 +1,7 @@
 // atomesh: reads the command line, runs one subcommand, turns every error into a message and an exit code.
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -57,24 +56,28 @@ std::string nearest_option(const CLI::App& app, const std::string& word) {
   return nearest_name(word.substr(0, word.find('=')), names);
 }
 
+// Of a word that stands where a subcommand or a file could.
+std::string about_unknown_word(const std::string& word) {
+  if (word.find_first_of("./") != std::string::npos) {
+    return word + ": there is no such file, and no subcommand of that name";
+  }
+  const std::string nearest = nearest_name(word, subcommand_names());
+  return "no subcommand \"" + word + "\"" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?");
+}
+
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::vector<std::string> unknown = app.remaining(true);
   if (chosen.empty()) {
     if (unknown.empty()) return fail(std::string(error.what()) + "\nTry: atomesh --help", exit_usage);
     const std::string& word = unknown.front();
-    if (std::filesystem::exists(word)) {
-      return fail("this version has no window to show " + word + " in; draw a picture of it with\n  atomesh render " +
-                      word + " -o picture.png",
-                  exit_unavailable);
+    if (word.starts_with("-")) {
+      const std::string nearest = nearest_option(app, word);
+      return fail("unexpected argument \"" + word + "\"" + (nearest.empty() ? "" : "; did you mean " + nearest + "?") +
+                      "\nTry: atomesh --help",
+                  exit_usage);
     }
-    const std::string nearest = nearest_name(word, subcommand_names());
-    if (nearest.empty() && word.find_first_of("./") != std::string::npos) {
-      return fail(word + ": there is no such file, and no subcommand of that name\nTry: atomesh --help", exit_usage);
-    }
-    return fail("no subcommand \"" + word + "\"" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") +
-                    "\nTry: atomesh --help",
-                exit_usage);
+    return fail(about_unknown_word(word) + "\nTry: atomesh --help", exit_usage);
   }
   const CLI::App& subcommand = *chosen.front();
   std::string message = subcommand.get_name() + ": ";
@@ -88,33 +91,40 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   return fail(message + "\nTry: atomesh " + subcommand.get_name() + " --help", exit_usage);
 }
 
-// The words of the command line when they name nothing but files that are there: what the window shows.
-std::vector<std::string> files_to_show(int argc, char** argv) {
-  std::vector<std::string> files(argv + 1, argv + argc);
-  const auto is_file = [](const std::string& word) { return std::filesystem::is_regular_file(word); };
-  if (!std::all_of(files.begin(), files.end(), is_file)) files.clear();
-  return files;
-}
-
-bool has_display() {
-  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr ||
-         std::getenv("QT_QPA_PLATFORM") != nullptr;
+// Words that are no subcommand are files for the window.
+int show_window(const std::vector<std::string>& files, const std::string& parameters) {
+  for (const std::string& file : files) {
+    if (std::filesystem::is_directory(file)) return fail(file + " is a folder; name a file of it", exit_usage);
+    if (!std::filesystem::exists(file)) return fail(about_unknown_word(file) + "\nTry: atomesh --help", exit_usage);
+  }
+  if (!parameters.empty() && !std::filesystem::exists(parameters)) {
+    return fail("--params: there is no file " + parameters, exit_usage);
+  }
+  // The window's own work is cancelled by closing it; Ctrl-C just ends the program.
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  return gui::run_window({files, parameters});
 }
 
 int run(int argc, char** argv) {
-  if (const std::vector<std::string> files = files_to_show(argc, argv);
-      has_display() && (argc == 1 || !files.empty())) {
-    return gui::run_window({files});
-  }
   CLI::App app(
       "atomesh shows what is buried in a sample: atoms -> volume, surface, crystal defects -> pictures.\n"
+      "Without a subcommand it opens its window: with FILE shown in it, else with the loader.\n"
       "Exit codes: 0 done, 1 wrong use, 2 bad input, 3 could not be done here, 4 comparison failed, "
       "130 cancelled.",
       "atomesh");
   app.set_version_flag("--version", "atomesh " ATOMESH_VERSION);
   app.require_subcommand(0, 1);
+  std::vector<std::string> files;
+  std::string parameters;
+  app.add_option("FILE", files,
+                 "Shown in the window: atoms, a .crb or .crt, a mesh, or a picture that atomesh made (its view comes "
+                 "back); a .crf beside it gives the view")
+      ->type_name("");
+  app.add_option("--params", parameters, "View parameters for the window")->type_name("F.crf");
   app.footer(
       "Example:\n"
+      "  atomesh nacl.crb\n"
       "  atomesh sample nacl-cracked -o nacl.dat\n"
       "  atomesh preprocess nacl.dat -o nacl.crb\n"
       "  atomesh render nacl.crb -o nacl.png\n");
@@ -136,14 +146,17 @@ int run(int argc, char** argv) {
   }
   for (const auto& [words, command] : commands) {
     if (!words->parsed()) continue;
+    if (!files.empty() || !parameters.empty()) {
+      return fail((files.empty() ? "--params" : files.front()) + " stands before the subcommand " + words->get_name() +
+                      "; write it after\nTry: atomesh " + words->get_name() + " --help",
+                  exit_usage);
+    }
     session.begin();
     const int exit_code = command(session);
     session.finish();
     return exit_code;
   }
-  return fail("this version has no window yet; the subcommands work without one: " +
-                  CLI::detail::join(subcommand_names(), ", ") + "\nTry: atomesh --help",
-              exit_unavailable);
+  return show_window(files, parameters);
 }
 
 }  // namespace

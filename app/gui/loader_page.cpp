@@ -51,7 +51,7 @@ QLabel* wrapped_label(const QString& name) {
 LoaderPage::LoaderPage(QWidget* parent, const QString& settings_file)
     : QWidget(parent),
       recent_("data", settings_file),
-      recent_parameters_("parameters", settings_file),
+      recent_parameters_("parameter_files", settings_file),
       settings_file_(settings_file) {
   setObjectName("loader");
   typing_ = new QTimer(this);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "app/gui/job.h"
+#include "app/gui/opening.h"
 #include "app/gui/render_worker.h"
 #include "app/gui/viewport.h"
 #include "core/error.h"
@@ -133,9 +134,11 @@ void MainWindow::complain(const QString& message) {
 
 void MainWindow::update_title() {
   const auto& document = workspace_.document();
-  setWindowFilePath(document ? QString::fromStdString(document->path) : QString());
-  setWindowTitle(document ? QFileInfo(QString::fromStdString(document->path)).fileName() + " – atomesh"
-                          : QStringLiteral("atomesh"));
+  const QString path = document ? QString::fromStdString(document->path) : QString();
+  const QString activity = opening_->activity();
+  setWindowFilePath(path);
+  const QString what = !activity.isEmpty() ? activity : QFileInfo(path).fileName();
+  setWindowTitle(what.isEmpty() ? QStringLiteral("atomesh") : what + " – atomesh");
 }
 
 void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms) {

@@ -25,11 +25,9 @@ class Job;
 class MovieDialog;
 class PictureCopier;
 class SavePictureDialog;
-class LoaderPage;
-class PreprocessingPage;
+class Opening;
 class RenderingParameters;
 class Viewport;
-struct PreprocessingRequest;
 struct WorkerPicture;
 
 class MainWindow : public QMainWindow {
@@ -47,6 +45,8 @@ class MainWindow : public QMainWindow {
   void open(const QString& path, const QString& crf = {});
   // As one step of the history.
   void load_parameters(const QString& path);
+  // What the command line named, either may be "": without a file the loader is shown.
+  void start(const QString& path, const QString& crf);
 
  public slots:
   void show_loader();
@@ -84,17 +84,12 @@ class MainWindow : public QMainWindow {
   void follow(Job* job);
   void complain(const QString& message);
   void change_view(const QString& name, const std::function<void(Parameters&)>& change);
-  struct Opened;
-  void take(const Opened& opened, const QString& path, const QString& crf);
-  void show_document(Document document, const std::optional<Parameters>& parameters);
-  void preprocess(const PreprocessingRequest& request, const QString& crf);
   void fill_recent_menu();
   void show_help(const QString& topic);
 
   Workspace workspace_;
   QStackedWidget* pages_ = nullptr;
-  LoaderPage* loader_ = nullptr;
-  PreprocessingPage* preprocessing_ = nullptr;
+  Opening* opening_ = nullptr;
   Viewport* viewport_ = nullptr;
   ColorMapEditor* color_map_ = nullptr;
   RenderingParameters* rendering_ = nullptr;
@@ -104,8 +99,6 @@ class MainWindow : public QMainWindow {
   SavePictureDialog* save_picture_ = nullptr;
   MovieDialog* movie_ = nullptr;
   PictureCopier* copier_ = nullptr;
-  std::unique_ptr<Job> opening_;
-  std::optional<Parameters> picture_parameters_;  // of the picture whose atoms are being preprocessed
 
   QAction* undo_ = nullptr;
   QAction* redo_ = nullptr;

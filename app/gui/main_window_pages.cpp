@@ -8,10 +8,9 @@
 #include "app/gui/display_options.h"
 #include "app/gui/drop_target.h"
 #include "app/gui/help_window.h"
-#include "app/gui/loader_page.h"
 #include "app/gui/main_window.h"
 #include "app/gui/material_panel.h"
-#include "app/gui/preprocessing_page.h"
+#include "app/gui/opening.h"
 #include "app/gui/rendering_parameters.h"
 #include "app/gui/viewport.h"
 
@@ -20,44 +19,16 @@ namespace atomesh::gui {
 void MainWindow::build_pages() {
   pages_ = new QStackedWidget(this);
   pages_->setObjectName("pages");
-  loader_ = new LoaderPage(pages_);
-  preprocessing_ = new PreprocessingPage(pages_);
   viewport_ = new Viewport(workspace_, pages_);
-  pages_->addWidget(loader_);
-  pages_->addWidget(preprocessing_);
   pages_->addWidget(viewport_);
   setCentralWidget(pages_);
+  opening_ = new Opening(workspace_, *pages_, *viewport_);
+  connect(opening_, &Opening::job_started, this, &MainWindow::follow);
+  connect(opening_, &Opening::activity_changed, this, &MainWindow::update_title);
+  connect(opening_, &Opening::exit_wanted, this, &QWidget::close);
 
-  connect(loader_, &LoaderPage::open_requested, this, &MainWindow::open);
-  connect(loader_, &LoaderPage::preprocess_requested, this, &MainWindow::preprocess);
-  connect(loader_, &LoaderPage::cancelled, this, [this] {
-    if (workspace_.document()) {
-      show_view();
-    } else {
-      close();
-    }
-  });
-  connect(preprocessing_, &PreprocessingPage::go_on, this, [this](const Document& document, const QString& crf) {
-    std::optional<Parameters> parameters = picture_parameters_;
-    picture_parameters_.reset();
-    show_document(document, parameters);
-    if (!crf.isEmpty()) load_parameters(crf);
-  });
-  connect(preprocessing_, &PreprocessingPage::back_to_loader, this, [this](const QString& file) {
-    loader_->set_file(file);
-    show_loader();
-  });
-  connect(preprocessing_, &PreprocessingPage::said, &workspace_, &Workspace::say);
-
-  auto* drops = new DropTarget(*this);
-  drops->setParent(this);
-  connect(drops, &DropTarget::dropped, this, [this](const QString& sample, const QString& crf) {
-    if (sample.isEmpty()) {
-      load_parameters(crf);
-    } else {
-      open(sample, crf);
-    }
-  });
+  const auto* drops = new DropTarget(*this);
+  connect(drops, &DropTarget::dropped, opening_, &Opening::take);
   connect(drops, &DropTarget::refused, this, &MainWindow::complain);
 }
 
@@ -118,11 +89,6 @@ void MainWindow::build_bottom_docks() {}
 void MainWindow::show_help(const QString& topic) {
   if (help_ == nullptr) help_ = new HelpWindow(this);
   help_->show_topic(topic);
-}
-
-void MainWindow::show_loader() {
-  loader_->set_has_view(workspace_.document().has_value());
-  pages_->setCurrentWidget(loader_);
 }
 
 void MainWindow::show_view() {

@@ -84,6 +84,7 @@ QWidget* PipelineForm::make_table() {
   scroll->setWidget(content);
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   scroll->setMinimumHeight(fontMetrics().height() * 12);
   return scroll;
 }

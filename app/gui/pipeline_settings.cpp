@@ -100,4 +100,16 @@ PipelineOptions pipeline_options(const PipelineValues& values) {
   return options;
 }
 
+PipelineValues recorded_values(const std::vector<std::pair<std::string, std::string>>& options) {
+  PipelineValues values;
+  for (const auto& [recorded, value] : options) {
+    std::string name = recorded == "simplify" ? simplify : recorded;
+    std::replace(name.begin(), name.end(), '_', '-');
+    for (const PipelineSetting& setting : pipeline_settings()) {
+      if (setting.name == name && value != setting.initial && !value.empty()) values[name] = value;
+    }
+  }
+  return values;
+}
+
 }  // namespace atomesh::gui

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "preprocess/pipeline.h"
@@ -27,5 +28,7 @@ const std::vector<PipelineSetting>& pipeline_settings();
 // By name, those that are not the default. Throws UsageError that names the option and says what is expected.
 using PipelineValues = std::map<std::string, std::string>;
 PipelineOptions pipeline_options(const PipelineValues& values);
+// The same of what a material's provenance has recorded (provenance_options()).
+PipelineValues recorded_values(const std::vector<std::pair<std::string, std::string>>& options);
 
 }  // namespace atomesh::gui

@@ -85,7 +85,7 @@ PreprocessingPage::PreprocessingPage(QWidget* parent, const QString& settings_fi
            : names.isEmpty()
                ? tr("Done in %1 ms.").arg(text(cli::milliseconds(ms)))
                : tr("Done in %1 ms; saved as %2.").arg(text(cli::milliseconds(ms)), names.join(tr(" and "))));
-    if (automatic_->isChecked() && run_.problem().isEmpty()) emit go_on(document, parameters_);
+    if (automatic_->isChecked() && run_.problem().isEmpty()) emit go_on(document);
   });
   show_buttons();
 }
@@ -139,23 +139,20 @@ QWidget* PreprocessingPage::make_buttons() {
     status_->setText(tr("Cancelling…"));
     run_.cancel();
   });
-  connect(again_, &QPushButton::clicked, this, &PreprocessingPage::restart);
+  connect(again_, &QPushButton::clicked, this, [this] {
+    const PreprocessingRequest same = run_.request();
+    run_.start(same);
+  });
   connect(back_, &QPushButton::clicked, this, [this] {
     emit back_to_loader(text(run_.written().empty() ? run_.request().input : run_.written().front()));
   });
   connect(go_on_, &QPushButton::clicked, this, [this] {
-    if (run_.document()) emit go_on(*run_.document(), parameters_);
+    if (run_.document()) emit go_on(*run_.document());
   });
   return buttons;
 }
 
-void PreprocessingPage::start(const PreprocessingRequest& request, const QString& parameters) {
-  parameters_ = parameters;
-  run_.start(request);
-}
-
-void PreprocessingPage::restart() {
-  const PreprocessingRequest request = run_.request();
+void PreprocessingPage::start(const PreprocessingRequest& request) {
   run_.start(request);
 }
 
@@ -180,7 +177,7 @@ void PreprocessingPage::show_plan() {
     }
   }
   stages_->resizeColumnToContents(stage_column);
-  log(tr("%1").arg(text(request.input)));
+  log(text(request.input));
   QStringList options;
   for (const auto& [name, value] : cli::recorded_options(request.settings, request.settings.options.read.format)) {
     if (!value.empty() && name != "unit_cell_hash") options << text(name) + " " + text(value);
@@ -261,6 +258,7 @@ void PreprocessingPage::show_buttons() {
   back_->setVisible(!running);
   go_on_->setVisible(state == Preprocessing::State::done);
   if (running) cancel_->setFocus();
+  emit state_changed();
 }
 
 }  // namespace atomesh::gui

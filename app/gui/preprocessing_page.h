@@ -24,22 +24,22 @@ class PreprocessingPage : public QWidget {
   explicit PreprocessingPage(QWidget* parent = nullptr, const QString& settings_file = {});
   ~PreprocessingPage() override;
 
-  // Shows the run from its beginning; the last one, if it still runs, is cancelled. `parameters`: the .crf that goes on
-  // with the result, or "".
-  void start(const PreprocessingRequest& request, const QString& parameters = {});
+  // Shows the run from its beginning; the last one, if it still runs, is cancelled.
+  void start(const PreprocessingRequest& request);
+  void cancel() { run_.cancel(); }
   const Preprocessing& run() const { return run_; }
 
  signals:
   // To rendering: asked for, or by itself when that is wanted and nothing needs to be read first.
-  void go_on(const atomesh::gui::Document& document, const QString& parameters);
+  void go_on(const atomesh::gui::Document& document);
   // With the file that was written, else the one that was read.
   void back_to_loader(const QString& file);
   void said(const QString& line);  // every line of the log
+  void state_changed();            // of the run
 
  private:
   QWidget* make_table();
   QWidget* make_buttons();
-  void restart();
   void show_plan();
   void mark_running(const QString& name);
   void show_row(const StageRow& row);
@@ -50,7 +50,6 @@ class PreprocessingPage : public QWidget {
 
   Preprocessing run_;
   QString settings_file_;
-  QString parameters_;
   QLabel* title_ = nullptr;
   QLabel* status_ = nullptr;
   QTableWidget* stages_ = nullptr;

@@ -40,6 +40,8 @@ void RecentFiles::clear() {
 }
 
 void RecentFiles::look() {
+  settings_->sync();
+  files_ = settings_->value(key_).toStringList().mid(0, most);
   const auto found = std::make_shared<QSet<QString>>();
   looking_ = std::make_unique<Job>(
       tr("Recent files"),

@@ -19,7 +19,7 @@ class RecentFiles : public QObject {
  public:
   static constexpr int most = 12;
 
-  // `what` is the name under which they are kept: "data", "parameters". `settings_file`: an .ini in the place of the
+  // `what` is the name under which they are kept: "data", "parameter_files". `settings_file`: an .ini in the place of the
   // program's own settings.
   explicit RecentFiles(const QString& what, const QString& settings_file = {}, QObject* parent = nullptr);
   ~RecentFiles() override;
@@ -30,7 +30,8 @@ class RecentFiles : public QObject {
   void remove(const QString& path);
   void clear();
 
-  // Looks, beside the window (a disk may not answer), which of them are there; `changed` says when it is known.
+  // Takes in what others have added, and looks, beside the window (a disk may not answer), which of them are there;
+  // `changed` says when it is known.
   void look();
   bool missing(const QString& path) const { return missing_.contains(path); }
 

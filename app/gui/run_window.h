@@ -8,10 +8,12 @@ namespace atomesh::gui {
 
 struct WindowArguments {
   std::vector<std::string> files;  // at most one data file, at most one .crf
+  std::string parameters;          // a .crf, or ""
 };
 
 // Opens the window and returns its exit code when it is closed. Throws UnavailableError, naming the headless
-// subcommands, where there is no display or no OpenGL 3.2.
+// subcommands, where there is no display or no OpenGL 3.2 (or ends the process so, where Qt leaves no choice), and
+// UsageError for more files than one can show.
 int run_window(const WindowArguments& arguments);
 
 // The OpenGL that windows ask for; before the application is made.

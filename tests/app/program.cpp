@@ -93,6 +93,40 @@ Outcome Workplace::run_interrupted(const std::vector<std::string>& arguments, in
   return run_in(folder_, arguments, delay_ms);
 }
 
+RunningProgram Workplace::start(const std::vector<std::string>& arguments) const {
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("fork failed");
+  if (child == 0) become(arguments, folder_, folder_.string() + ".out", folder_.string() + ".err");
+  return {child, folder_};
+}
+
+RunningProgram::~RunningProgram() {
+  if (running()) finish(0);
+}
+
+bool RunningProgram::running() {
+  if (!over_) over_ = waitpid(process_, &status_, WNOHANG) == process_;
+  return !over_;
+}
+
+Outcome RunningProgram::finish(int deadline_ms) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  while (running()) {
+    if (Clock::now() - start >= std::chrono::milliseconds(deadline_ms)) kill(process_, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const std::chrono::duration<double, std::milli> went_on = Clock::now() - start;
+  const std::string out = folder_.string() + ".out";
+  const std::string err = folder_.string() + ".err";
+  Outcome outcome{WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), text_of(out), text_of(err),
+                  went_on.count()};
+  std::error_code ignored;
+  fs::remove(out, ignored);
+  fs::remove(err, ignored);
+  return outcome;
+}
+
 std::string Workplace::read(const std::string& name) const {
   return text_of(path(name));
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace atomesh::testing {
@@ -12,6 +13,26 @@ struct Outcome {
   std::string out;
   std::string err;
   double ms_after_signal = 0.0;  // of run_interrupted: how long it went on
+};
+
+// A program that was started and goes on beside the test; killed with the object.
+class RunningProgram {
+ public:
+  RunningProgram(int process, std::filesystem::path folder) : process_(process), folder_(std::move(folder)) {}
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  int process() const { return process_; }
+  bool running();
+  // Waits for its end, at most so long, and then kills it (exit code 128 + 9).
+  Outcome finish(int deadline_ms);
+
+ private:
+  int process_;
+  bool over_ = false;
+  int status_ = 0;
+  std::filesystem::path folder_;
 };
 
 // A fresh temporary folder in which atomesh is run; removed at the end.
@@ -28,6 +49,9 @@ class Workplace {
   Outcome run_printing_to(const std::string& device, const std::vector<std::string>& arguments) const;
   // The same, interrupted (SIGINT) after `delay_ms`.
   Outcome run_interrupted(const std::vector<std::string>& arguments, int delay_ms) const;
+
+  // Starts it and returns; one at a time.
+  RunningProgram start(const std::vector<std::string>& arguments) const;
 
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   bool exists(const std::string& name) const { return std::filesystem::exists(path(name)); }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "tests/app/program.h"
 
@@ -216,11 +217,28 @@ TEST(ExitCodes, AFullDiskBehindStandardOutputIsNoSuccess) {
   }
 }
 
-TEST(ExitCodes, NoWindowYet) {
+TEST(ExitCodes, WithoutADisplayTheWindowNamesWhatWorksWithoutOne) {
+  for (const char* variable : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}) unsetenv(variable);
   const Workplace place;
   place.write("a.dat", cube_dat);
-  expect_failure(place, {}, not_here, {"window", "render"}, {"a.dat"});
-  expect_failure(place, {"a.dat"}, not_here, {"window", "atomesh render a.dat"}, {"a.dat"});
+  const std::vector<std::string> words{"no window", "DISPLAY", "atomesh render", "preprocess", "defects"};
+  expect_failure(place, {}, not_here, words, {"a.dat"});
+  expect_failure(place, {"a.dat"}, not_here, words, {"a.dat"});
+}
+
+TEST(ExitCodes, WordsForTheWindowThatAreNoFiles) {
+  const Workplace place;
+  place.write("a.dat", cube_dat);
+  place.write("b.dat", cube_dat);
+  place.write("v.crf", "");
+  const std::vector<std::string> left{"a.dat", "b.dat", "v.crf"};
+  expect_failure(place, {"none.crb"}, wrong_use, {"none.crb", "no such file"}, left);
+  expect_failure(place, {"."}, wrong_use, {"folder"}, left);
+  expect_failure(place, {"a.dat", "b.dat"}, wrong_use, {"a.dat, b.dat", "one"}, left);
+  expect_failure(place, {"a.dat", "v.crf", "--params", "v.crf"}, wrong_use, {".crf"}, left);
+  expect_failure(place, {"a.dat", "--params", "none.crf"}, wrong_use, {"--params", "none.crf"}, left);
+  expect_failure(place, {"--params", "v.crf", "info", "a.dat"}, wrong_use, {"--params", "info"}, left);
+  expect_failure(place, {"a.dat", "--parms", "v.crf"}, wrong_use, {"--parms", "--params"}, left);
 }
 
 TEST(ExitCodes, RenderersOfOtherBuilds) {

@@ -335,6 +335,13 @@ TEST(PipelineSettings, AreTheCommandLines) {
   EXPECT_EQ(find("neighbourhood").initial, "1");
 }
 
+TEST(PipelineSettings, ComeBackFromWhatWasRecorded) {
+  const PipelineValues values{{"carve", "2.6"},          {"unit-cell", "none"}, {"keep-every", "7"}, {"format", "xyz"},
+                              {"simplify-by", "remove"}, {"noise", "0.05"},     {"mask", "As,Ga"}};
+  EXPECT_EQ(recorded_values(provenance_options(pipeline_options(values), "xyz")), values);
+  EXPECT_EQ(recorded_values(provenance_options({}, "")), PipelineValues{});
+}
+
 TEST(PipelineSettings, BecomeOptions) {
   const PipelineOptions defaults = pipeline_options({});
   EXPECT_EQ(provenance_options(defaults, ""), provenance_options({}, ""));

@@ -74,7 +74,7 @@ TEST_F(WindowFiles, DropsOpenAndApply) {
   ASSERT_TRUE(wait_for([&] { return window->viewport().settled(); }));
   EXPECT_EQ(window->workspace().document()->path, material);
   drop({QString::fromStdString(folder.file("view.crf"))});
-  EXPECT_EQ(window->workspace().parameters(), parameters);
+  EXPECT_TRUE(wait_for([&] { return window->workspace().parameters() == parameters; }));
   child<QAction>(*window, "action_undo").trigger();
   EXPECT_EQ(window->workspace().parameters(), Parameters());
   child<QAction>(*window, "action_redo").trigger();
