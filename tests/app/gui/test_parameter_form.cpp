@@ -1,6 +1,7 @@
 // Forms of the parameter table, driven as by a person: every kind of editor, undo and redo, errors at the field.
 #include <gtest/gtest.h>
 
+#include <QAction>
 #include <QApplication>
 #include <QCheckBox>
 #include <QClipboard>
@@ -294,6 +295,28 @@ TEST_F(Form, TabGoesThroughTheRowsInTheirOrder) {
       QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
     }
   }
+}
+
+// The window's single letters and digits are shortcuts (q closes the program): not for who is typing.
+TEST_F(Form, TypingIsNoShortcut) {
+  int shortcuts = 0;
+  for (const Qt::Key key : {Qt::Key_A, Qt::Key_Q, Qt::Key_1}) {
+    auto* action = new QAction(&form_);
+    action->setShortcut(key);
+    form_.addAction(action);
+    QObject::connect(action, &QAction::triggered, &form_, [&shortcuts] { ++shortcuts; });
+  }
+  form_.activateWindow();
+  ASSERT_TRUE(test::wait_for([&] { return form_.isActiveWindow(); }));
+  type(part<NumberBox>("atoms.radius.Na", "box"), "1.1");
+  type(part<NumberBox>("atoms.radius.Na", "box"), "auto");
+  type(*part<QComboBox>("volume.field", "text").lineEdit(), "q1a");
+  EXPECT_EQ(now("volume.field"), "q1a");
+  EXPECT_EQ(shortcuts, 0);
+  auto& check = part<QCheckBox>("light.3.enabled", "check");
+  check.setFocus();
+  QTest::keyClick(&check, Qt::Key_Q);
+  EXPECT_EQ(shortcuts, 1) << "the shortcuts of this test do work";
 }
 
 TEST_F(Form, TheWheelChangesOnlyWhatHasTheFocus) {
