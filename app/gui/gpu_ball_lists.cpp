@@ -19,11 +19,6 @@ namespace {
 constexpr std::size_t bytes_of_a_hit = 12;
 constexpr std::size_t first_room = std::size_t{4} << 20U;  // hits
 
-void bind_texture(vtkOpenGLState& state, unsigned unit, unsigned kind, unsigned texture) {
-  state.vtkglActiveTexture(GL_TEXTURE0 + unit);
-  glBindTexture(kind, texture);
-}
-
 }  // namespace
 
 GpuBallLists::GpuBallLists()
@@ -69,9 +64,9 @@ std::size_t GpuBallLists::collect(vtkOpenGLRenderWindow& window, const GpuView& 
   program.SetUniformi("opaque_ball", 0);
   program.SetUniformi("opaque_depth", 1);
   program.SetUniformi("balls", 2);
-  bind_texture(state, 2, GL_TEXTURE_BUFFER, balls.texture);
-  bind_texture(state, 1, GL_TEXTURE_2D, nearest_opaque.depths());
-  bind_texture(state, 0, GL_TEXTURE_2D, nearest_opaque.texture());
+  bind_buffer_texture(window, 2, balls.texture);
+  bind_texture(window, 1, nearest_opaque.depths());
+  bind_texture(window, 0, nearest_opaque.texture());
   GLuint used = 0;
   glBindBuffer(GL_ATOMIC_COUNTER_BUFFER, used_);
   glBufferSubData(GL_ATOMIC_COUNTER_BUFFER, 0, sizeof(used), &used);
@@ -128,9 +123,9 @@ bool GpuBallLists::compose(vtkOpenGLRenderWindow& window, const GpuView& view, c
   glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, 0);
   glBindBufferBase(GL_ATOMIC_COUNTER_BUFFER, 0, 0);
-  bind_texture(state, 2, GL_TEXTURE_BUFFER, 0);
-  bind_texture(state, 1, GL_TEXTURE_2D, 0);
-  bind_texture(state, 0, GL_TEXTURE_2D, 0);
+  bind_buffer_texture(window, 2, 0);
+  bind_texture(window, 1, 0);
+  bind_texture(window, 0, 0);
   return done;
 }
 

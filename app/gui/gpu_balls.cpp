@@ -74,7 +74,7 @@ class GpuBalls final : public GpuDrawing {
       lay_light(window);
     }
     glBindVertexArray(0);
-    bind_texture(state, 0, GL_TEXTURE_2D, 0);
+    bind_texture(window, 0, 0);
     state.vtkglEnable(GL_DEPTH_TEST);
     state.vtkglDepthFunc(GL_LEQUAL);
     state.vtkglEnable(GL_BLEND);
@@ -97,11 +97,6 @@ class GpuBalls final : public GpuDrawing {
   }
 
  private:
-  static void bind_texture(vtkOpenGLState& state, unsigned unit, unsigned kind, unsigned texture) {
-    state.vtkglActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(kind, texture);
-  }
-
   void upload() {
     const std::size_t most = std::min(largest_buffer_texture(), limits_.texture_floats) / ball_floats;
     for (std::size_t first = 0; first < scene_->balls.size(); first += most) {
@@ -130,20 +125,20 @@ class GpuBalls final : public GpuDrawing {
     program.SetUniformi("depth_before", 1);
     program.SetUniformi("light", 2);
     program.SetUniformi("balls", 3);
-    bind_texture(state, 2, GL_TEXTURE_2D, layer > 0 ? light_.texture() : 0);
-    bind_texture(state, 1, GL_TEXTURE_2D, layer > 0 ? before.depths() : 0);
-    bind_texture(state, 0, GL_TEXTURE_2D, layer > 0 ? before.texture() : 0);
+    bind_texture(window, 2, layer > 0 ? light_.texture() : 0);
+    bind_texture(window, 1, layer > 0 ? before.depths() : 0);
+    bind_texture(window, 0, layer > 0 ? before.texture() : 0);
     state.vtkglEnable(GL_DEPTH_TEST);
     state.vtkglDepthMask(GL_TRUE);
     state.vtkglDisable(GL_BLEND);
     glBindVertexArray(no_attributes_);
     for (const GpuBallPart& part : parts_) {
       program.SetUniformi("first", part.first);
-      bind_texture(state, 3, GL_TEXTURE_BUFFER, part.texture);
+      bind_buffer_texture(window, 3, part.texture);
       glDrawArrays(GL_TRIANGLES, 0, vertices_of_a_ball * part.count);
     }
-    bind_texture(state, 3, GL_TEXTURE_BUFFER, 0);
-    for (const unsigned unit : {2U, 1U, 0U}) bind_texture(state, unit, GL_TEXTURE_2D, 0);
+    bind_buffer_texture(window, 3, 0);
+    for (const unsigned unit : {2U, 1U, 0U}) bind_texture(window, unit, 0);
   }
 
   // Into the framebuffer that is bound, which says how it is blended.
@@ -156,16 +151,16 @@ class GpuBalls final : public GpuDrawing {
     program.SetUniformf("ambient_share", optics::ambient_share);
     program.SetUniformf("diffuse_share", optics::diffuse_share);
     state.vtkglDisable(GL_DEPTH_TEST);
-    bind_texture(state, 0, GL_TEXTURE_2D, layers_[static_cast<std::size_t>(layer % 2)].texture());
+    bind_texture(window, 0, layers_[static_cast<std::size_t>(layer % 2)].texture());
     glBindVertexArray(no_attributes_);
     for (const GpuBallPart& part : parts_) {
-      bind_texture(state, 1, GL_TEXTURE_BUFFER, part.texture);
+      bind_buffer_texture(window, 1, part.texture);
       program.SetUniformi("first", part.first);
       program.SetUniformi("count", part.count);
       glDrawArrays(GL_TRIANGLES, 0, 3);
     }
-    bind_texture(state, 1, GL_TEXTURE_BUFFER, 0);
-    bind_texture(state, 0, GL_TEXTURE_2D, 0);
+    bind_buffer_texture(window, 1, 0);
+    bind_texture(window, 0, 0);
   }
 
   // All layers that are seen, front to back, into light_.
@@ -210,7 +205,7 @@ class GpuBalls final : public GpuDrawing {
     vtkOpenGLState& state = *window.GetState();
     vtkShaderProgram& program = copy_program_.use(window);
     program.SetUniformi("light", 0);
-    bind_texture(state, 0, GL_TEXTURE_2D, light_.texture());
+    bind_texture(window, 0, light_.texture());
     state.vtkglDisable(GL_DEPTH_TEST);
     state.vtkglEnable(GL_BLEND);
     state.vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

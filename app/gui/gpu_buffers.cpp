@@ -57,16 +57,13 @@ void delete_buffer(unsigned& buffer) {
   buffer = 0;
 }
 
-void set_attribute(vtkShaderProgram& program, const char* name, unsigned buffer, int parts, std::size_t stride,
-                   std::size_t offset, unsigned divisor) {
+void set_attribute(vtkShaderProgram& program, const char* name, unsigned buffer) {
   const GLint location = glGetAttribLocation(static_cast<GLuint>(program.GetHandle()), name);
   if (location < 0) return;
   const auto at = static_cast<GLuint>(location);
   glBindBuffer(GL_ARRAY_BUFFER, buffer);
   glEnableVertexAttribArray(at);
-  // NOLINTNEXTLINE: OpenGL takes an offset as a pointer
-  glVertexAttribPointer(at, parts, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride), reinterpret_cast<void*>(offset));
-  if (divisor != 0) glVertexAttribDivisorARB(at, divisor);
+  glVertexAttribPointer(at, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
   glBindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
@@ -93,6 +90,16 @@ std::size_t largest_buffer_texture() {
 void delete_texture(unsigned& texture) {
   if (texture != 0) glDeleteTextures(1, &texture);
   texture = 0;
+}
+
+void bind_texture(vtkOpenGLRenderWindow& window, unsigned unit, unsigned texture) {
+  window.GetState()->vtkglActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+void bind_buffer_texture(vtkOpenGLRenderWindow& window, unsigned unit, unsigned texture) {
+  window.GetState()->vtkglActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_BUFFER, texture);
 }
 
 void GpuTarget::resize(vtkOpenGLRenderWindow& window, int width, int height) {

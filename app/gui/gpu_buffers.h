@@ -12,16 +12,18 @@ namespace atomesh::gui {
 // Throws UnavailableError when the card has no room.
 unsigned make_buffer(const void* bytes, std::size_t size);
 void delete_buffer(unsigned& buffer);
-// Of the vertex array that is bound: `parts` floats at `offset` of every `stride` bytes of the buffer, the next one for
-// each vertex, or for each instance with divisor 1. What the program does not use is left out.
-void set_attribute(vtkShaderProgram& program, const char* name, unsigned buffer, int parts, std::size_t stride,
-                   std::size_t offset, unsigned divisor);
+// Of the vertex array that is bound: three floats of the buffer for each vertex. What the program does not use is left
+// out.
+void set_attribute(vtkShaderProgram& program, const char* name, unsigned buffer);
 void delete_vertex_array(unsigned& array);
 
 // The floats of a buffer for texelFetch().
 unsigned make_buffer_texture(unsigned buffer);
 std::size_t largest_buffer_texture();  // floats
 void delete_texture(unsigned& texture);
+// Textures of the shaders' samplers, which are told the unit's number.
+void bind_texture(vtkOpenGLRenderWindow& window, unsigned unit, unsigned texture);
+void bind_buffer_texture(vtkOpenGLRenderWindow& window, unsigned unit, unsigned texture);
 
 // A texture to draw into: balls and their depths (GL_R32UI, GL_DEPTH_COMPONENT32F), or light (GL_RGBA32F).
 class GpuTarget {

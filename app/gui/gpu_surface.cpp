@@ -43,15 +43,14 @@ class GpuSurface final : public GpuDrawing {
     state.vtkglDepthMask(GL_TRUE);
     state.vtkglDisable(GL_BLEND);
     state.vtkglDisable(GL_CULL_FACE);
-    state.vtkglActiveTexture(GL_TEXTURE0);
     glBindVertexArray(attributes_);
     for (const Part& part : parts_) {
       glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, part.corners);
-      glBindTexture(GL_TEXTURE_BUFFER, part.normals_texture);
+      bind_buffer_texture(window, 0, part.normals_texture);
       glDrawElements(GL_TRIANGLES, part.count, GL_UNSIGNED_INT, nullptr);
     }
     glBindVertexArray(0);
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    bind_buffer_texture(window, 0, 0);
     state.vtkglEnable(GL_BLEND);
     state.vtkglDepthFunc(GL_LEQUAL);
   }
@@ -82,10 +81,10 @@ class GpuSurface final : public GpuDrawing {
     glGenVertexArrays(1, &attributes_);
     glBindVertexArray(attributes_);
     positions_ = make_buffer(scene_->vertices.data(), scene_->vertices.size() * sizeof(Vec3f));
-    set_attribute(program, "position", positions_, 3, sizeof(Vec3f), 0, 0);
+    set_attribute(program, "position", positions_);
     if (!scene_->vertex_normals.empty()) {
       vertex_normals_ = make_buffer(scene_->vertex_normals.data(), scene_->vertex_normals.size() * sizeof(Vec3f));
-      set_attribute(program, "normal", vertex_normals_, 3, sizeof(Vec3f), 0, 0);
+      set_attribute(program, "normal", vertex_normals_);
     }
     glBindVertexArray(0);
     const std::size_t most = std::min(largest_buffer_texture(), limits_.texture_floats) / 3;
