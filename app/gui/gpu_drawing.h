@@ -21,12 +21,15 @@ struct GpuView {
   int width = 1;  // pixels
   int height = 1;
   bool perspective = true;
-  float pixel = 1.0F;               // Camera::pixel
-  std::array<float, 3> eye{};       // about Scene::center, rounded to float,
-  std::array<float, 3> eye_rest{};  // and what rounding took away
-  std::array<float, 9> axes{};      // matrix of a point about the eye to eye space, column by column
-  float reach = 1.0F;               // 1 / a length that nothing of the scene is farther away than
-  int light_count = 0;              // of enabled lights
+  float pixel = 1.0F;  // Camera::pixel
+  // A point of the line of sight about Scene::center, rounded to float, what rounding took away, and its depth. The eye
+  // itself or, with parallel projection, where the eye is far, what is looked at.
+  std::array<float, 3> anchor{};
+  std::array<float, 3> anchor_rest{};
+  float anchor_depth = 0.0F;
+  std::array<float, 9> axes{};  // matrix of a point about the anchor to eye space, but for its depth, column by column
+  float reach = 1.0F;           // 1 / a length that nothing of the scene is farther away than
+  int light_count = 0;          // of enabled lights
   std::array<float, 3 * max_lights> light_positions{};  // eye space
   std::array<float, 3 * max_lights> light_colors{};     // colour × intensity
 };

@@ -17,10 +17,11 @@ uniform float reach;
 
 // A point of the scene in the eye's space.
 constexpr const char* to_eye_space = R"(
-uniform vec3 eye;
-uniform vec3 eye_rest;
+uniform vec3 anchor;
+uniform vec3 anchor_rest;
+uniform float anchor_depth;
 uniform mat3 axes;
-vec3 in_eye_space(vec3 point) { return axes * ((point - eye) - eye_rest); }
+vec3 in_eye_space(vec3 point) { return axes * ((point - anchor) - anchor_rest) + vec3(0.0, 0.0, anchor_depth); }
 )";
 
 // The ray through the fragment's centre.

@@ -26,12 +26,15 @@ GpuView gpu_view(const Scene& scene, const Camera& camera, const Parameters& par
   view.perspective = camera.projection == Projection::perspective;
   view.pixel = static_cast<float>(camera.pixel);
   const Vec3 eye = camera.eye - scene.center;
-  set_vector(view.eye.data(), eye);
-  set_vector(view.eye_rest.data(), eye - Vec3(Vec3f(eye)));
+  const double radius = scene.bounds.empty() ? 0.0 : 0.5 * scene.bounds.diagonal();
+  const double anchor_depth = view.perspective ? 0.0 : 2.0 * radius;  // as make_camera() has it
+  const Vec3 anchor = eye + anchor_depth * camera.forward;
+  set_vector(view.anchor.data(), anchor);
+  set_vector(view.anchor_rest.data(), anchor - Vec3(Vec3f(anchor)));
+  view.anchor_depth = static_cast<float>(anchor_depth);
   for (int i = 0; i < 3; ++i) {
     set_vector(&view.axes[static_cast<std::size_t>(3 * i)], {camera.right[i], camera.up[i], camera.forward[i]});
   }
-  const double radius = scene.bounds.empty() ? 0.0 : 0.5 * scene.bounds.diagonal();
   const double away = glm::length(scene.bounds.center() - camera.eye);
   view.reach = static_cast<float>(1.0 / (1.001 * (away + radius) + 1e-30));
   for (const optics::LightRay& light : optics::scene_lights(parameters, scene, camera)) {
@@ -51,8 +54,9 @@ void tell(const GpuView& view, vtkShaderProgram& program) {
   program.SetUniformi("perspective", view.perspective ? 1 : 0);
   program.SetUniformf("pixel", view.pixel);
   program.SetUniformf("reach", view.reach);
-  program.SetUniform3f("eye", view.eye.data());
-  program.SetUniform3f("eye_rest", view.eye_rest.data());
+  program.SetUniform3f("anchor", view.anchor.data());
+  program.SetUniform3f("anchor_rest", view.anchor_rest.data());
+  program.SetUniformf("anchor_depth", view.anchor_depth);
   program.SetUniformMatrix3x3("axes", axes.data());
   program.SetUniformi("light_count", view.light_count);
   program.SetUniform3fv("light_positions", max_lights, view.light_positions.data());

@@ -110,6 +110,7 @@ std::vector<Case> cases() {
                      .color = {0.5F + 0.06F * angle, 1.0F - 0.1F * angle, i % 2 == 0 ? 0.2F : 0.9F},
                      .intensity = 0.35F};
     }
+    p.lights[5].position = {0.3F, 0.2F, -4.0F};  // behind: no highlight where no light falls
   };
   const auto cuts = [](Parameters& p) {
     p.cut_planes[0] = {.enabled = true, .normal = {1, 0.4, 0.2}, .side = CutPlane::Side::less_equal, .distance = 8.5};
@@ -124,6 +125,8 @@ std::vector<Case> cases() {
     p.pan = Vec3(0.4, 1.0, -0.7);
     p.field_of_view = 60.0;
   };
+  // With parallel projection too what is behind the eye is not seen.
+  const auto halfway = [](Parameters& p) { p.pan = 16.0 * Vec3(-0.47, 0.81, -0.34); };
   const auto rolled = [](Parameters& p) {
     p.roll = 33.0;
     p.azimuth = -110.0;
@@ -151,6 +154,7 @@ std::vector<Case> cases() {
       {"surface, no light", Mode::surface, no_light},
       {"surface, near", Mode::surface, near},
       {"surface, eye inside", Mode::surface, inside},
+      {"surface, halfway", Mode::surface, halfway},
       {"surface, rolled", Mode::surface, rolled},
       {"balls", Mode::atoms, nothing},
       {"balls, lights", Mode::atoms, lights},
@@ -160,6 +164,7 @@ std::vector<Case> cases() {
       {"balls, no light", Mode::atoms, no_light},
       {"balls, near", Mode::atoms, near},
       {"balls, eye among them", Mode::atoms, inside},
+      {"balls, halfway", Mode::atoms, halfway},
       {"balls, rolled", Mode::atoms, rolled},
       {"balls, small", Mode::atoms, [](Parameters& p) { p.atoms.scale = 0.4; }},
       {"balls, large", Mode::atoms, [](Parameters& p) { p.atoms.scale = 2.5; }},
@@ -243,9 +248,9 @@ TEST(GpuScene, TransparentBallsAreComposedOneWayOrAnother) {
 TEST(GpuScene, BallsOfOneDepthAreInTheirOrder) {
   NEED_A_CARD;
   Card card;
-  for (const double opacity : {1.0, 0.5}) {
+  for (const int opaque : {0, 1, 2, 3}) {  // none, all, those with an even index, the others
     Parameters parameters = test::looking(Mode::atoms, "front", Projection::parallel);
-    parameters.atoms.regular_opacity = opacity;
+    parameters.atoms.regular_opacity = 0.5;
     parameters.atoms.colors = {{"A", {1, 0, 0}}, {"B", {0, 0, 1}}, {"C", {0, 1, 0}}};
     parameters.atoms.radii = {{"A", 2.0}, {"B", 2.0}, {"C", 2.0}};
     const Material material = test::atoms_material({{"A", {0, 0, 0}},
@@ -256,6 +261,9 @@ TEST(GpuScene, BallsOfOneDepthAreInTheirOrder) {
                                                     {"C", {2, 0, 5}},
                                                     {"A", {4, 0, 5}}});
     const Subject subject = subject_of(material, parameters, 101, 101);
+    for (Ball& ball : subject.scene->balls) {
+      if (opaque == 1 || (opaque > 1 && ball.atom % 2 == static_cast<Index>(opaque - 2))) ball.color.a = 1.0F;
+    }
     for (const bool lists : {true, false}) {
       GpuScene gpu({.lists = lists});
       gpu.set_scene(subject.scene);
@@ -285,6 +293,27 @@ TEST(GpuScene, SpeciesAreHiddenColouredAndSized) {
   const Image image = card.draw(gpu, subject.camera, parameters);
   keep(image, "gpu species");
   expect_agreement(image, *subject.scene, subject.camera, parameters, "species");
+  gpu.release();
+}
+
+// Near a corner of a large sample a float about its centre is coarse, and the eye's place must not be rounded to it.
+TEST(GpuScene, NearACornerOfALargeSampleTheyAreAsSharp) {
+  NEED_A_CARD;
+  Card card;
+  std::vector<std::pair<std::string, Vec3>> atoms{{"C", {-2000, -1500, -1800}}, {"C", {2000, 1500, 1800}}};
+  const Vec3 corner(1531.123, -1377.456, 1210.789);
+  for (int i = 0; i < 60; ++i) atoms.push_back({"C", corner + 1.7 * Vec3(i % 5, (i / 5) % 4, i / 20)});
+  GpuScene gpu;
+  for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+    Parameters parameters = test::looking(Mode::atoms, "iso", projection);
+    parameters.pan = corner;
+    parameters.zoom = 3000.0;
+    const Subject subject = subject_of(test::atoms_material(atoms), parameters, 200, 200);
+    gpu.set_scene(subject.scene);
+    const Image image = card.draw(gpu, subject.camera, parameters);
+    keep(image, projection == Projection::perspective ? "gpu corner" : "gpu corner, parallel");
+    expect_agreement(image, *subject.scene, subject.camera, parameters, "corner");
+  }
   gpu.release();
 }
 
