@@ -50,8 +50,8 @@ PixelBox clipped_box(const ProjectedVertices& vertices, const Tetrahedron& corne
   std::array<Vec3, 4> p;
   double depth = 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
-    const double* at = &vertices.camera[3 * static_cast<std::size_t>(corners[k])];
-    p[k] = {at[0], at[1], at[2]};
+    const ProjectedVertex& vertex = vertices[corners[k]];
+    p[k] = {vertex.x, vertex.y, vertex.z};
     depth = std::max(depth, std::abs(p[k].z));
   }
   // Nearer than where rays begin by far.

@@ -147,7 +147,7 @@ class CellProjectionFrame final : public Frame {
   }
 
   bool behind(const Tetrahedron& corners) const {
-    return std::any_of(corners.begin(), corners.end(), [this](Index v) { return vertices_.behind[v] != 0; });
+    return std::any_of(corners.begin(), corners.end(), [this](Index v) { return vertices_[v].behind(); });
   }
 
   PixelBox box_of(Index cell) const {
@@ -285,7 +285,7 @@ class CellProjectionFrame final : public Frame {
     const bool layered = scene_.mode == Mode::volume_surface;
     const SetupOutput output = tile.resize(cells.size(), layered);
     SetupInput input{};
-    input.vertices = vertices_.camera.data();
+    input.vertices = vertices_.data();
     input.corners = scene_.tetrahedra.front().data();
     input.values = layered ? &scene_.colors.front().r : scene_.scalars.data();
     input.value_count = layered ? 4 : 1;

@@ -26,7 +26,7 @@ constexpr FacePairs face_pairs[5] = {{I4{0, 0, 0, 0}, I4{0, 1, 2, 3}},
                                      {I4{0, 1, 2, 2}, I4{3, 3, 3, 3}},
                                      {I4{0, 1, 2, 3}, I4{0, 0, 0, 0}}};
 
-// Sixteen blocks of a tile, two rows of them, as lanes: which of the tile's blocks a cell may cover.
+// Which of the tile's blocks a cell may cover, sixteen at a time: four rows of four.
 class BlockTest {
  public:
   explicit BlockTest(const PixelLattice& lattice) {
@@ -37,26 +37,26 @@ class BlockTest {
     const auto row_stride = static_cast<float>(lattice.row_stride);
     half_width_ = middle * column_stride;
     half_height_ = middle * row_stride;
-    float place[lane_count];
+    width_ = column_stride * block_side;
+    height_ = row_stride * block_side;
+    first_column_ = static_cast<float>(lattice.column_phase) + half_width_;
+    first_row_ = static_cast<float>(lattice.row_phase) + half_height_;
+    float columns[lane_count];
+    float rows[lane_count];
     for (int i = 0; i < lane_count; ++i) {
-      place[i] = static_cast<float>(lattice.column_phase) +
-                 column_stride * (static_cast<float>(i % blocks_per_side * block_side) + middle);
+      columns[i] = width_ * static_cast<float>(i % side);
+      rows[i] = height_ * static_cast<float>(i / side);
     }
-    column_ = load(place);
-    for (int group = 0; group < groups; ++group) {
-      for (int i = 0; i < lane_count; ++i) {
-        const int row = 2 * group + i / blocks_per_side;
-        place[i] = static_cast<float>(lattice.row_phase) + row_stride * (static_cast<float>(row * block_side) + middle);
-      }
-      row_[group] = load(place);
-    }
+    column_ = load(columns);
+    row_ = load(rows);
   }
 
   // A ray meets the cell where each face it leaves by is farther than each it enters by. Along a face's outline that is
   // a straight line, and a block on the wrong side of one of the lines is not met. Faces first those entered by, of
   // which there are `entries`, 1 to 3. What rounding may hide is added, here and where the rays are intersected.
-  // Of the blocks `candidates`.
-  BlockSet blocks(const F4& a, const F4& b, const F4& c, int entries, BlockSet candidates) const {
+  // Of the blocks `candidates`, which lie in columns left … right and rows top … bottom.
+  BlockSet blocks(const F4& a, const F4& b, const F4& c, int entries, int left, int right, int top, int bottom,
+                  BlockSet candidates) const {
     const FacePairs& pairs = face_pairs[entries];
     const F4 slope_a = __builtin_shuffle(a, pairs.out) - __builtin_shuffle(a, pairs.in);
     const F4 slope_b = __builtin_shuffle(b, pairs.out) - __builtin_shuffle(b, pairs.in);
@@ -65,30 +65,37 @@ class BlockTest {
     const F4 rounding = 1e-6F * (__builtin_shuffle(reach, pairs.out) + __builtin_shuffle(reach, pairs.in));
     const F4 offset = __builtin_shuffle(c, pairs.out) - __builtin_shuffle(c, pairs.in) + rounding +
                       half_width_ * magnitude(slope_a) + half_height_ * magnitude(slope_b);
-    Lanes along[4];
-    Lanes down[4];
-    for (int k = 0; k < 4; ++k) {
-      along[k] = multiply_add(Lanes(slope_a[k]), column_, Lanes(offset[k]));
-      down[k] = Lanes(slope_b[k]);
-    }
     BlockSet set = 0;
-    for (int group = 0; group < groups; ++group) {
-      if ((candidates >> (lane_count * group) & 0xFFFFU) == 0) continue;
-      const Lanes least =
-          min(min(multiply_add(down[0], row_[group], along[0]), multiply_add(down[1], row_[group], along[1])),
-              min(multiply_add(down[2], row_[group], along[2]), multiply_add(down[3], row_[group], along[3])));
-      const Mask met = least > Lanes(0.0F);
-      set |= static_cast<BlockSet>(bits(met)) << (lane_count * group);
+    for (int row = top; row <= bottom; row += side) {
+      for (int column = left; column <= right; column += side) {
+        const float at_column = first_column_ + width_ * static_cast<float>(column);
+        const float at_row = first_row_ + height_ * static_cast<float>(row);
+        set |= sixteen(slope_a, slope_b, offset + at_column * slope_a + at_row * slope_b)
+               << (blocks_per_side * row + column);
+      }
     }
     return set & candidates;
   }
 
  private:
-  static constexpr int groups = blocks_per_tile / lane_count;
+  static constexpr int side = 4;
+
+  // As blocks of the tile's first four rows and columns.
+  BlockSet sixteen(const F4& slope_a, const F4& slope_b, const F4& offset) const {
+    Lanes least(3e38F);
+    for (int k = 0; k < 4; ++k) {
+      least = min(least, multiply_add(Lanes(slope_b[k]), row_,
+                                      multiply_add(Lanes(slope_a[k]), column_, Lanes(offset[k]))));
+    }
+    const auto met = static_cast<BlockSet>(bits(least > Lanes(0.0F)));
+    return (met & 0x000FU) | (met & 0x00F0U) << 4 | (met & 0x0F00U) << 8 | (met & 0xF000U) << 12;
+  }
 
   float half_width_, half_height_;  // of a block
-  Lanes column_;
-  Lanes row_[groups];
+  float width_, height_;            // from one to the next
+  float first_column_, first_row_;  // the first one's middle
+  Lanes column_;                    // of the lanes, from the first one
+  Lanes row_;
 };
 
 // How many of the sets each block is in.

@@ -23,6 +23,7 @@
 
 #include "core/geometry.h"
 #include "core/parameters.h"
+#include "render/cpu/projected_vertex.h"
 #include "render/pixel_lattice.h"
 
 namespace atomesh::cell_projection {
@@ -151,11 +152,11 @@ struct CellOptics {
 };
 
 struct SetupInput {
-  const double* vertices;  // three per vertex: camera's axes (right, up, depth) about the eye, Å
-  const Index* corners;    // four per tetrahedron
-  const float* values;     // per vertex, `value_count` of them
-  int value_count;         // 4 or 1
-  const Index* cells;      // of the tile
+  const ProjectedVertex* vertices;
+  const Index* corners;  // four per tetrahedron
+  const float* values;   // per vertex, `value_count` of them
+  int value_count;       // 4 or 1
+  const Index* cells;    // of the tile
   std::size_t count;
   int column, row;  // the tile's first pixel
   PixelLattice lattice;

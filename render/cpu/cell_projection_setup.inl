@@ -13,6 +13,9 @@ typedef float Floats __attribute__((vector_size(4 * group_size)));
 typedef Index Indices __attribute__((vector_size(4 * group_size)));
 typedef std::int32_t Ints __attribute__((vector_size(4 * group_size)));
 typedef double D4 __attribute__((vector_size(32)));
+// Column and row of each cell.
+typedef float Places __attribute__((vector_size(8 * group_size)));
+typedef std::int32_t PlaceBits __attribute__((vector_size(8 * group_size)));
 
 // In one instruction, where the compiler's own conversion of vectors goes through memory.
 #if defined(__AVX__)
@@ -77,17 +80,31 @@ static inline bool any_above(const F4& v, float limit) {
 #endif
 }
 
+static inline bool any_above(const Doubles& v, double limit) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_pd_mask(v, _mm512_set1_pd(limit), _CMP_GT_OQ) != 0;
+#elif defined(__AVX__)
+  return _mm256_movemask_pd(_mm256_cmp_pd(v, _mm256_set1_pd(limit), _CMP_GT_OQ)) != 0;
+#else
+  bool any = false;
+  for (int l = 0; l < group_size; ++l) any |= v[l] > limit;
+  return any;
+#endif
+}
+
 // So many cells of a tile at once. Corners stand in ascending order of vertex index, face k opposite corner k.
 struct CellGroup {
   Indices vertex[4];
   Ints odd;  // all bits where that order is an odd permutation of the cell's own
   Doubles x[4], y[4], z[4];
+  Places place[4];                                                // where the picture has them
   Doubles nx[4], ny[4], nz[4];                                    // of the faces' planes, from their corners in order
   Doubles a[4], b[4], c[4];                                       // the planes as u(i, j)
   F4 cell_a[group_size], cell_b[group_size], cell_c[group_size];  // the same, cell by cell
   Ints entries;                                                   // bit k: the ray enters by face k
   Ints steep;                                                     // bit k: of face k the coefficients are split
-  Ints first_column, last_column, first_row, last_row;            // of the lattice's grid, between the corners
+  std::int32_t first[2 * group_size];                             // column and row of each cell, of the lattice's grid,
+  std::int32_t last[2 * group_size];                              // between the corners
 };
 
 static inline void transpose(const Doubles* doubles, F4* cells) {
@@ -109,6 +126,61 @@ static inline void transpose(const Doubles* doubles, F4* cells) {
 }
 
 // Cells input.cells[first] and on; the tile's last one fills the lanes that are left.
+#if defined(__AVX512F__)
+static inline void load_group(const SetupInput& input, std::size_t first, CellGroup& g) {
+  const auto corners_of = [&](std::size_t l) {
+    const std::size_t at = first + l;
+    const Index cell = input.cells[at < input.count ? at : input.count - 1];
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(input.corners + 4 * static_cast<std::size_t>(cell)));
+  };
+  const auto four = [&](std::size_t l) {
+    __m512i cells = _mm512_castsi128_si512(corners_of(l));
+    cells = _mm512_inserti32x4(cells, corners_of(l + 1), 1);
+    cells = _mm512_inserti32x4(cells, corners_of(l + 2), 2);
+    return _mm512_inserti32x4(cells, corners_of(l + 3), 3);
+  };
+  const __m512i low = four(0);
+  const __m512i high = four(4);
+  const __m512i by_corner = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+  const __m512i corners01 = _mm512_permutex2var_epi32(low, by_corner, high);
+  const __m512i corners23 =
+      _mm512_permutex2var_epi32(low, _mm512_add_epi32(by_corner, _mm512_set1_epi32(2)), high);
+  __m256i corner[4] = {_mm512_castsi512_si256(corners01), _mm512_extracti64x4_epi64(corners01, 1),
+                       _mm512_castsi512_si256(corners23), _mm512_extracti64x4_epi64(corners23, 1)};
+  unsigned odd = 0;
+  constexpr int network[5][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
+  for (const auto& [i, j] : network) {
+    odd ^= _mm256_cmplt_epu32_mask(corner[j], corner[i]);
+    const __m256i lesser = _mm256_min_epu32(corner[i], corner[j]);
+    corner[j] = _mm256_max_epu32(corner[i], corner[j]);
+    corner[i] = lesser;
+  }
+  g.odd = reinterpret_cast<Ints>(_mm256_movm_epi32(static_cast<__mmask8>(odd)));
+  for (int k = 0; k < 4; ++k) g.vertex[k] = reinterpret_cast<Indices>(corner[k]);
+  const __m512i first_of_pairs = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+  const __m512i second_of_pairs = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  for (int k = 0; k < 4; ++k) {
+    const auto vertex = [&](int l) {
+      return _mm256_load_pd(reinterpret_cast<const double*>(input.vertices + g.vertex[k][l]));
+    };
+    const auto pair = [&](int l) {
+      return _mm512_insertf64x4(_mm512_castpd256_pd512(vertex(l)), vertex(l + 4), 1);
+    };
+    const __m512d p0 = pair(0);
+    const __m512d p1 = pair(1);
+    const __m512d p2 = pair(2);
+    const __m512d p3 = pair(3);
+    const __m512d xz01 = _mm512_unpacklo_pd(p0, p1);
+    const __m512d xz23 = _mm512_unpacklo_pd(p2, p3);
+    const __m512d yw01 = _mm512_unpackhi_pd(p0, p1);
+    const __m512d yw23 = _mm512_unpackhi_pd(p2, p3);
+    g.x[k] = _mm512_permutex2var_pd(xz01, first_of_pairs, xz23);
+    g.y[k] = _mm512_permutex2var_pd(yw01, first_of_pairs, yw23);
+    g.z[k] = _mm512_permutex2var_pd(xz01, second_of_pairs, xz23);
+    g.place[k] = reinterpret_cast<Places>(_mm512_permutex2var_pd(yw01, second_of_pairs, yw23));
+  }
+}
+#else
 static inline void load_group(const SetupInput& input, std::size_t first, CellGroup& g) {
   for (int l = 0; l < group_size; ++l) {
     const std::size_t at = first + static_cast<std::size_t>(l);
@@ -128,13 +200,16 @@ static inline void load_group(const SetupInput& input, std::size_t first, CellGr
   }
   for (int k = 0; k < 4; ++k) {
     for (int l = 0; l < group_size; ++l) {
-      const double* p = input.vertices + 3 * static_cast<std::size_t>(g.vertex[k][l]);
-      g.x[k][l] = p[0];
-      g.y[k][l] = p[1];
-      g.z[k][l] = p[2];
+      const ProjectedVertex& p = input.vertices[g.vertex[k][l]];
+      g.x[k][l] = p.x;
+      g.y[k][l] = p.y;
+      g.z[k][l] = p.z;
+      g.place[k][2 * l] = p.column;
+      g.place[k][2 * l + 1] = p.row;
     }
   }
 }
+#endif
 
 // Corners, then what they name, are asked for some cells ahead.
 static inline void prefetch_groups(const SetupInput& input, std::size_t first) {
@@ -144,7 +219,7 @@ static inline void prefetch_groups(const SetupInput& input, std::size_t first) {
     }
     const Index* ahead = input.corners + 4 * static_cast<std::size_t>(input.cells[near]);
     for (int k = 0; k < 4; ++k) {
-      __builtin_prefetch(input.vertices + 3 * static_cast<std::size_t>(ahead[k]));
+      __builtin_prefetch(input.vertices + static_cast<std::size_t>(ahead[k]));
       __builtin_prefetch(input.values + static_cast<std::size_t>(input.value_count) * ahead[k]);
     }
   }
@@ -191,11 +266,17 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   largest = largest > abs_c ? largest : abs_c;
   // Far beyond any depth, and nowhere near where floats end when it is multiplied.
   const Doubles limit = zero + 1e20;
-  const Doubles scale = largest > limit ? limit / largest : zero + 1.0;
-  g.a[k] = a * scale;
-  g.b[k] = b * scale;
-  g.c[k] = c * scale;
-  const Doubles reach = (tile_side * (abs_a + abs_b) + abs_c) * scale;
+  Doubles reach = tile_side * (abs_a + abs_b) + abs_c;
+  if (any_above(largest, 1e20)) {
+    const Doubles scale = largest > limit ? limit / largest : zero + 1.0;
+    a *= scale;
+    b *= scale;
+    c *= scale;
+    reach *= scale;
+  }
+  g.a[k] = a;
+  g.b[k] = b;
+  g.c[k] = c;
   g.steep |= __builtin_convertvector(reach > zero + view.plain_reach, Ints) & (1 << k);
 
   // The ray enters by the faces whose outward normal looks back at it. Which way is outward follows from the order of
@@ -205,44 +286,46 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   g.entries |= (back ^ inward) & (1 << k);
 }
 
-// The lattice's pixels between the corners, those within a thousandth of a pixel included; all where a corner is not
-// before the eye.
-static inline void find_box(const View& view, const PixelLattice& lattice, double x0, double y0, CellGroup& g) {
-  const Doubles zero{};
-  const Doubles one = zero + 1.0;
-  const double margin = 0x1p-10;
-  const double per_pixel = 1.0 / view.pixel;
-  Doubles left, right, top, bottom;
-  Ints behind{};
-  for (int k = 0; k < 4; ++k) {
-    behind |= __builtin_convertvector(g.z[k] <= zero, Ints);
-    const Doubles scale = view.perspective ? 1.0 / g.z[k] : one;
-    const Doubles column = (g.x[k] * scale - x0) * per_pixel;
-    const Doubles row = (y0 - g.y[k] * scale) * per_pixel;
-    left = k == 0 ? column : (column < left ? column : left);
-    right = k == 0 ? column : (column > right ? column : right);
-    top = k == 0 ? row : (row < top ? row : top);
-    bottom = k == 0 ? row : (row > bottom ? row : bottom);
+// The lattice's pixels between the corners, those within pixel_margin included; all where a corner is not before the eye.
+class BoxFinder {
+ public:
+  explicit BoxFinder(const SetupInput& input) {
+    const PixelLattice& lattice = input.lattice;
+    for (int i = 0; i < 2 * group_size; ++i) {
+      const bool row = i % 2 == 1;
+      const int stride = row ? lattice.row_stride : lattice.column_stride;
+      const int begin = row ? input.row + lattice.row_phase : input.column + lattice.column_phase;
+      begin_[i] = static_cast<float>(begin);
+      per_stride_[i] = 1.0F / static_cast<float>(stride);
+      end_[i] = static_cast<float>(tile_side / stride);
+    }
   }
-  if (!view.perspective) behind = Ints{};
-  const auto first = [&](const Doubles& from, int phase, int stride) {
-    const Doubles place = (from - (margin + phase)) * (1.0 / stride);
-    const double beyond = tile_side;
-    const Doubles inside = place > zero ? (place < beyond ? place : zero + beyond) : zero;
-    const Ints whole = __builtin_convertvector(inside, Ints);
-    return (whole - __builtin_convertvector(__builtin_convertvector(whole, Doubles) < inside, Ints)) & ~behind;
-  };
-  const auto last = [&](const Doubles& to, int phase, int stride) {
-    const Doubles place = (to + (margin - phase)) * (1.0 / stride) + 1.0;
-    const double end = static_cast<double>(tile_side / stride);
-    const Doubles inside = place > zero ? (place < end ? place : zero + end) : zero;
-    return ((__builtin_convertvector(inside, Ints) & ~behind) | (tile_side / stride & behind)) - 1;
-  };
-  g.first_column = first(left, lattice.column_phase, lattice.column_stride);
-  g.last_column = last(right, lattice.column_phase, lattice.column_stride);
-  g.first_row = first(top, lattice.row_phase, lattice.row_stride);
-  g.last_row = last(bottom, lattice.row_phase, lattice.row_stride);
-}
+
+  void find(CellGroup& g) const {
+    const Places zero{};
+    Places low = g.place[0];
+    Places high = g.place[0];
+    PlaceBits behind = g.place[0] != g.place[0];
+    for (int k = 1; k < 4; ++k) {
+      low = g.place[k] < low ? g.place[k] : low;
+      high = g.place[k] > high ? g.place[k] : high;
+      behind |= g.place[k] != g.place[k];
+    }
+    // One beyond the last pixel where there is none.
+    const Places from = ((low - begin_) - pixel_margin) * per_stride_;
+    const Places to = ((high - begin_) + pixel_margin) * per_stride_ + 1.0F;
+    const Places first = from > zero ? (from < end_ ? from : end_) : zero;
+    const Places last = to > zero ? (to < end_ ? to : end_) : zero;
+    const PlaceBits whole = __builtin_convertvector(first, PlaceBits);
+    const PlaceBits first_pixel = behind ? PlaceBits{} : whole - (__builtin_convertvector(whole, Places) < first);
+    const PlaceBits end_pixel = __builtin_convertvector(behind ? end_ : last, PlaceBits) - 1;
+    __builtin_memcpy(g.first, &first_pixel, sizeof g.first);
+    __builtin_memcpy(g.last, &end_pixel, sizeof g.last);
+  }
+
+ private:
+  Places begin_, per_stride_, end_;
+};
 
 // Bits first … last.
 static inline std::uint32_t bits_between(std::int32_t first, std::int32_t last) {
@@ -287,21 +370,25 @@ static inline BlockSet write_planes(const CellGroup& g, int l, const BlockTest& 
                                     CellPlanes& plane, CellRefinement& refinement) {
   const auto entries = static_cast<unsigned>(g.entries[l]);
   if (entries == 15U) return 0;  // turned over by rounding
-  const int left = g.first_column[l];
-  const int right = g.last_column[l];
-  const int top = g.first_row[l];
-  const int bottom = g.last_row[l];
+  const int left = g.first[2 * l];
+  const int right = g.last[2 * l];
+  const int top = g.first[2 * l + 1];
+  const int bottom = g.last[2 * l + 1];
   if (left > right || top > bottom) return 0;
-  const BlockSet between = bits_between(left / block_side, right / block_side) *
-                               row_spread.rows[bits_between(top / block_side, bottom / block_side)] &
-                           wanted;
+  const int left_block = left / block_side;
+  const int right_block = right / block_side;
+  const int top_block = top / block_side;
+  const int bottom_block = bottom / block_side;
+  const BlockSet between =
+      bits_between(left_block, right_block) * row_spread.rows[bits_between(top_block, bottom_block)] & wanted;
   if (between == 0) return 0;
   const I4 list = face_lists.list[entries];
   const F4 a = __builtin_shuffle(g.cell_a[l], list);
   const F4 b = __builtin_shuffle(g.cell_b[l], list);
   const F4 c = __builtin_shuffle(g.cell_c[l], list);
   const int entry_count = __builtin_popcount(entries);
-  const BlockSet blocks = entries == 0 ? between : test.blocks(a, b, c, entry_count, between);
+  const BlockSet blocks = entries == 0 ? between : test.blocks(a, b, c, entry_count, left_block, right_block,
+                                                                    top_block, bottom_block, between);
   if (blocks == 0) return 0;
   store4(plane.a, a);
   store4(plane.b, b);

@@ -126,6 +126,7 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
   const double y0 = view.top - view.pixel * input.row;
   const double keep = 1.0 - view.order_blend;
   const BlockTest test(input.lattice);
+  const BoxFinder boxes(input);
   CellGroup g;
   CellSlopes s;
   for (std::size_t first = 0; first < input.count; first += group_size) {
@@ -133,7 +134,7 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
     load_group(input, first, g);
     g.entries = Ints{};
     g.steep = Ints{};
-    find_box(view, input.lattice, x0, y0, g);
+    boxes.find(g);
     for (int k = 0; k < 4; ++k) find_planes(view, x0, y0, k, g);
     transpose(g.a, g.cell_a);
     transpose(g.b, g.cell_b);

@@ -17,9 +17,9 @@ namespace {
 bool turned_away(const ProjectedVertices& vertices, const Triangle& corners, bool perspective) {
   std::array<Vec3, 3> p{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t v = corners[k];
-    if (vertices.behind[v] != 0) return false;
-    p[k] = Vec3(vertices.camera[3 * v], vertices.camera[3 * v + 1], perspective ? vertices.camera[3 * v + 2] : 1.0);
+    const ProjectedVertex& v = vertices[corners[k]];
+    if (v.behind()) return false;
+    p[k] = Vec3(v.x, v.y, perspective ? v.z : 1.0);
   }
   const double size = glm::dot(p[0], p[0]) + glm::dot(p[1], p[1]) + glm::dot(p[2], p[2]);
   return glm::dot(p[0], glm::cross(p[1], p[2])) < -1e-12 * size * std::sqrt(size);

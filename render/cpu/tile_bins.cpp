@@ -1,5 +1,7 @@
 #include "render/cpu/tile_bins.h"
 
+#include <limits>
+
 #include "core/parallel.h"
 
 namespace atomesh {
@@ -74,11 +76,8 @@ TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
 }
 
 ProjectedVertices project_vertices(std::span<const Vec3f> vertices, const Vec3& center, const Camera& camera) {
-  ProjectedVertices projected;
-  projected.camera.resize(3 * vertices.size());
-  projected.pixel.resize(2 * vertices.size());
+  ProjectedVertices projected(vertices.size());
   const bool perspective = camera.projection == Projection::perspective;
-  projected.behind.assign(vertices.size(), 0);
   const Vec3 offset = center - camera.eye;
   const double middle_column = 0.5 * camera.width - 0.5;
   const double middle_row = 0.5 * camera.height - 0.5;
@@ -88,17 +87,14 @@ ProjectedVertices project_vertices(std::span<const Vec3f> vertices, const Vec3& 
       const double x = glm::dot(p, camera.right);
       const double y = glm::dot(p, camera.up);
       const double z = glm::dot(p, camera.forward);
-      projected.camera[3 * v] = x;
-      projected.camera[3 * v + 1] = y;
-      projected.camera[3 * v + 2] = z;
       if (perspective && z <= 0.0) {
-        projected.behind[v] = 1;
+        projected[v] = {x, y, z, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
         continue;
       }
       const double scale = 1.0 / (perspective ? z * camera.pixel : camera.pixel);
       // A limit, so that what lies far outside converts to an int.
-      projected.pixel[2 * v] = static_cast<float>(std::clamp(middle_column + x * scale, -1e8, 1e8));
-      projected.pixel[2 * v + 1] = static_cast<float>(std::clamp(middle_row - y * scale, -1e8, 1e8));
+      projected[v] = {x, y, z, static_cast<float>(std::clamp(middle_column + x * scale, -1e8, 1e8)),
+                      static_cast<float>(std::clamp(middle_row - y * scale, -1e8, 1e8))};
     }
   });
   return projected;

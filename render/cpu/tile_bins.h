@@ -11,6 +11,7 @@
 #include "core/camera.h"
 #include "core/geometry.h"
 #include "core/progress.h"
+#include "render/cpu/projected_vertex.h"
 
 namespace atomesh {
 
@@ -48,18 +49,10 @@ struct TileBins {
 TileBins bin_to_tiles(std::size_t count, int width, int height, int side,
                       const std::function<PixelBox(std::size_t)>& box, const Progress& progress);
 
-// Vertices as the renderers project them.
-struct ProjectedVertices {
-  std::vector<double> camera;  // three per vertex: along right, up and forward about the eye, Å
-  std::vector<float> pixel;    // two per vertex: column and row in pixels; not set where `behind`
-  // Perspective only: vertices that have no place in the image plane, being in the eye's plane or behind it.
-  std::vector<std::uint8_t> behind;
-};
+using ProjectedVertices = std::vector<ProjectedVertex>;
 
 ProjectedVertices project_vertices(std::span<const Vec3f> vertices, const Vec3& center, const Camera& camera);
 
-// Beyond the rounding of a float at column 16,384, and the shift of cell projection's rays.
-inline constexpr float pixel_margin = 0.005F;
 
 // The pixels whose centres a primitive with these corners may cover, clipped to the picture: all of them when some of
 // its corners are behind the eye, none when all are.
@@ -69,8 +62,9 @@ PixelBox pixel_box(const ProjectedVertices& vertices, const std::array<Index, N>
   float high[2] = {-3e38F, -3e38F};
   std::size_t behind = 0;
   for (const Index corner : corners) {
-    behind += vertices.behind[corner];
-    const float* at = &vertices.pixel[2 * static_cast<std::size_t>(corner)];
+    const ProjectedVertex& vertex = vertices[corner];
+    behind += vertex.behind() ? 1U : 0U;
+    const float at[2] = {vertex.column, vertex.row};
     for (int axis = 0; axis < 2; ++axis) {
       low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
       high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];

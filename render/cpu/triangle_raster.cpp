@@ -5,9 +5,9 @@ namespace atomesh {
 TriangleRaster::TriangleRaster(const ProjectedVertices& vertices, const Triangle& corners, bool perspective) {
   std::array<Vec3, 3> h;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double* p = &vertices.camera[3 * static_cast<std::size_t>(corners[k])];
-    depths_[k] = p[2];
-    h[k] = {p[0], p[1], perspective ? p[2] : 1.0};
+    const ProjectedVertex& p = vertices[corners[k]];
+    depths_[k] = p.z;
+    h[k] = {p.x, p.y, perspective ? p.z : 1.0};
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 edge = glm::cross(h[(k + 1) % 3], h[(k + 2) % 3]);
