@@ -5,20 +5,6 @@
 
 namespace atomesh::cell_projection {
 
-bool CellBins::find_range(const TileGrid& grid, const PixelBox& box, Range& range) {
-  if (box.empty()) return false;
-  const int first_column = std::max(box.first_column / tile_side - grid.first_column, 0);
-  const int last_column = std::min(box.last_column / tile_side - grid.first_column, grid.columns - 1);
-  const int first_row = std::max(box.first_row / tile_side - grid.first_row, 0);
-  const int last_row = std::min(box.last_row / tile_side - grid.first_row, grid.rows - 1);
-  if (first_column > last_column || first_row > last_row) return false;
-  range.first_column = static_cast<std::uint16_t>(first_column);
-  range.last_column = static_cast<std::uint16_t>(last_column);
-  range.first_row = static_cast<std::uint16_t>(first_row);
-  range.last_row = static_cast<std::uint16_t>(last_row);
-  return true;
-}
-
 void CellBins::fill(const TileGrid& grid, std::span<const Range> ranges, Part& part) {
   const auto for_tiles = [&](auto&& visit) {
     for (const Range& range : ranges) {

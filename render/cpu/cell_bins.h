@@ -73,6 +73,20 @@ class CellBins {
   std::vector<Part> parts_;
 };
 
+inline bool CellBins::find_range(const TileGrid& grid, const PixelBox& box, Range& range) {
+  if (box.empty()) return false;
+  const int first_column = std::max(box.first_column / tile_side - grid.first_column, 0);
+  const int last_column = std::min(box.last_column / tile_side - grid.first_column, grid.columns - 1);
+  const int first_row = std::max(box.first_row / tile_side - grid.first_row, 0);
+  const int last_row = std::min(box.last_row / tile_side - grid.first_row, grid.rows - 1);
+  if (first_column > last_column || first_row > last_row) return false;
+  range.first_column = static_cast<std::uint16_t>(first_column);
+  range.last_column = static_cast<std::uint16_t>(last_column);
+  range.first_row = static_cast<std::uint16_t>(first_row);
+  range.last_row = static_cast<std::uint16_t>(last_row);
+  return true;
+}
+
 // The boxes of one part at a time are kept from the counting to the filling.
 template <class Box>
 CellBins::CellBins(std::size_t count, const TileGrid& grid, const Progress& progress, Box&& box)
@@ -80,14 +94,15 @@ CellBins::CellBins(std::size_t count, const TileGrid& grid, const Progress& prog
   parallel_for(parts_.size(), 1, [&](std::size_t part, std::size_t) {
     progress.check();
     const std::size_t end = count * (part + 1) / parts_.size();
-    std::vector<Range> ranges;
-    Range range{};
-    for (std::size_t i = count * part / parts_.size(); i < end; ++i) {
-      if (!find_range(grid, box(i), range)) continue;
+    const std::size_t begin = count * part / parts_.size();
+    const auto ranges = std::make_unique_for_overwrite<Range[]>(end - begin);
+    std::size_t found = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      Range& range = ranges[found];
       range.cell = static_cast<Index>(i);
-      ranges.push_back(range);
+      found += find_range(grid, box(i), range) ? 1U : 0U;
     }
-    fill(grid, ranges, parts_[part]);
+    fill(grid, {ranges.get(), found}, parts_[part]);
   });
 }
 

@@ -3,6 +3,8 @@
 
 namespace atomesh::ATOMESH_ISA {
 
+constexpr std::uint32_t all_of_them = (1U << lane_count) - 1;
+
 // Of two cells that a ray meets, that which begins first comes first; of two that begin at the same depth, that of the
 // lower record.
 //
@@ -45,7 +47,7 @@ class Order {
     bool cyclic = false;
     for (std::uint32_t at = first; at < added; ++at) {
       const std::uint32_t other = scratch.order[at];
-      const Mask other_lanes = mask_of(scratch.lanes[other]);
+      const Mask other_lanes = mask_of(scratch.lanes[other] & all_of_them);
       const Lanes other_in = load(scratch.u_in + 16 * other);
       if (any(other_lanes & !(other_in < nearest_moved))) {
         cyclic |= any(other_lanes & lanes & (scratch.record[other] > record ? other_in < u_in : !(other_in > u_in)));
@@ -143,11 +145,16 @@ static inline void prefetch(const Record& record) {
   for (std::size_t at = 0; at < sizeof(Record); at += 64) __builtin_prefetch(bytes + at);
 }
 
-// Where a cell begins and ends on the block's rays: on those that meet it, u_in < u_out.
-static inline void clip(const Lanes* u, const Lanes& enters1, const Lanes& enters2, const Lanes& nearest,
-                        const Lanes& farthest, Lanes& u_in, Lanes& u_out) {
-  u_in = max(max(nearest, u[0]), max(min(u[1], enters1), min(u[2], enters2)));
-  u_out = min(min(farthest, u[3]), min(max(u[1], enters1), max(u[2], enters2)));
+// Where a cell begins and ends on the block's rays: on those that meet it, u_in < u_out. Of its faces the ray enters by
+// the first and leaves by the last.
+static inline void clip(const Lanes* u, unsigned entries, const Lanes& nearest, const Lanes& farthest, Lanes& u_in,
+                        Lanes& u_out) {
+  constexpr float far = 3e38F;
+  static constexpr float enters[4][2] = {{-far, -far}, {-far, -far}, {far, -far}, {far, far}};
+  const Lanes second(enters[entries][0]);
+  const Lanes third(enters[entries][1]);
+  u_in = max(max(nearest, u[0]), max(min(u[1], second), min(u[2], third)));
+  u_out = min(min(farthest, u[3]), min(max(u[1], second), max(u[2], third)));
 }
 
 // Of a cell that has a refinement.
@@ -161,20 +168,12 @@ static __attribute__((noinline, flatten)) Crossing cross_refined(const CellPlane
     u[k] = affine(pixels, p.a[k], p.b[k], p.c[k]) + affine(pixels, r.a[k], r.b[k], r.c[k]);
   }
   Crossing crossing;
-  clip(u, Lanes(p.enters[0]), Lanes(p.enters[1]), nearest, farthest, crossing.u_in, crossing.u_out);
-  if (r.eye_inside != 0) {
+  clip(u, p.entries, nearest, farthest, crossing.u_in, crossing.u_out);
+  if (p.entries == 0) {
     crossing.u_in = nearest;
     crossing.u_out = min(u[0], crossing.u_out);
   }
   return crossing;
-}
-
-static inline bool has_refinement(const CellPlanes& p) {
-  std::uint32_t far;
-  std::uint32_t plain;
-  __builtin_memcpy(&far, &p.enters[1], sizeof far);
-  __builtin_memcpy(&plain, &plain_far, sizeof plain);
-  return (far & 0x7FFFFFFFU) != plain;
 }
 
 // Lanes of the block within the cell's box: columns and rows as sets of the tile's.
@@ -191,7 +190,7 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
   const Pixels pixels = rays;
   float* const all_in = lists.u_in;
   float* const all_out = lists.u_out;
-  std::uint16_t* const all_lanes = lists.lanes;
+  std::uint32_t* const all_lanes = lists.lanes;
   std::uint32_t* const records = lists.record;
   const Lanes nearest(view.nearest);
   const Lanes farthest(view.farthest);
@@ -210,14 +209,14 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
     const CellPlanes& p = planes[record];
     Lanes u_in;
     Lanes u_out;
-    if (has_refinement(p)) {
+    if (p.refined) {
       const Crossing crossing = cross_refined(p, refinements[record], pixels, nearest, farthest);
       u_in = crossing.u_in;
       u_out = crossing.u_out;
     } else {
       const Lanes u[4] = {affine(pixels, p.a[0], p.b[0], p.c[0]), affine(pixels, p.a[1], p.b[1], p.c[1]),
                           affine(pixels, p.a[2], p.b[2], p.c[2]), affine(pixels, p.a[3], p.b[3], p.c[3])};
-      clip(u, Lanes(p.enters[0]), Lanes(p.enters[1]), nearest, farthest, u_in, u_out);
+      clip(u, p.entries, nearest, farthest, u_in, u_out);
     }
     const Mask lanes = mask_of(in_box(p, column, row)) & (u_in < u_out);
     const unsigned met = bits(lanes);
@@ -225,7 +224,7 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
     // none are overwritten by the next.
     store(all_in + 16 * count, u_in);
     store(all_out + 16 * count, select(lanes, u_out, min(u_in, u_out)));
-    all_lanes[count] = static_cast<std::uint16_t>(met);
+    all_lanes[count] = met | (met | (p.wild ? all_of_them : 0U)) << lane_count;
     records[count] = record;
     if (sorted) sorted = order.add(lists, count, u_in, lanes);
     count += (0U - met) >> 31U;
@@ -258,11 +257,87 @@ static __attribute__((noinline, flatten)) std::uint64_t compose_prepared(const I
     }
     for (const typename Integrator::Prepared* from = prepared; n < end && open; ++n, ++from) {
       const std::uint32_t next = scratch.order[n];
-      steps += static_cast<unsigned>(__builtin_popcount(scratch.lanes[next]));
+      steps += static_cast<unsigned>(__builtin_popcount(scratch.lanes[next] & all_of_them));
       integrator.lay(scratch.record[next], *from, light);
       finish_opaque(light);
       open = any(light.through > Lanes(0.0F));
     }
+  }
+  result = light;
+  return steps;
+}
+
+// The next `together` cells of the order, which share no ray.
+template <int together, class Integrator>
+static inline void compose_together(const Integrator& integrator, Layers& layers, const BlockScratch& scratch,
+                                    const std::uint32_t* next, unsigned lanes, Light& light) {
+  std::uint32_t records[together];
+  Mask rays[together];
+  Lanes u_in = load(scratch.u_in + 16 * next[0]);
+  Lanes u_out = load(scratch.u_out + 16 * next[0]);
+  for (int n = 0; n < together; ++n) {
+    records[n] = scratch.record[next[n]];
+    rays[n] = mask_of(scratch.lanes[next[n]] & all_of_them);
+    if (n == 0) continue;
+    u_in = select(rays[n], load(scratch.u_in + 16 * next[n]), u_in);
+    u_out = select(rays[n], load(scratch.u_out + 16 * next[n]), u_out);
+  }
+  layers.lay_before(u_in, u_out, lanes, light);
+  finish_opaque(light);
+  integrator.template lay<together>(records, rays, u_in, u_out, light);
+  finish_opaque(light);
+}
+
+// Cells in their order; consecutive ones that share no ray at once, where the integrator can. Returns the steps.
+template <class Integrator>
+static inline std::uint64_t compose_in_order(const Integrator& integrator, Layers& layers, const BlockScratch& scratch,
+                                             std::uint32_t count, Light& result) {
+  Light light = result;
+  std::uint64_t steps = 0;
+  constexpr bool together = requires(const Mask* rays, const std::uint32_t* numbers, const Lanes& u, Light& l) {
+    integrator.template lay<1>(numbers, rays, u, u, l);
+  };
+  for (std::uint32_t n = 0; n < count;) {
+    const std::uint32_t* const next = scratch.order + n;
+    const auto ahead = [&](std::uint32_t by) {
+      if (n + by < count) prefetch(integrator.record(scratch.record[next[by]]));
+    };
+    if constexpr (!together) {
+      const unsigned lanes = scratch.lanes[next[0]] & all_of_them;
+      ahead(values_ahead);
+      compose(integrator, layers, scratch.record[next[0]], load(scratch.u_in + 16 * next[0]),
+              load(scratch.u_out + 16 * next[0]), lanes, light);
+      steps += static_cast<unsigned>(__builtin_popcount(lanes));
+      ++n;
+    } else {
+      // In the upper half of `lanes` stand the rays that a cell shares with none beside it.
+      unsigned taken = scratch.lanes[next[0]];
+      std::uint32_t size = 1;
+      const std::uint32_t most = count - n < 4 ? count - n : 4;
+      for (; size < most; ++size) {
+        const unsigned added = scratch.lanes[next[size]];
+        if ((added & taken) >> lane_count != 0) break;
+        taken |= added;
+      }
+      const unsigned lanes = taken & all_of_them;
+      for (std::uint32_t i = 0; i < size; ++i) ahead(values_ahead + i);
+      switch (size) {
+        case 1:
+          compose_together<1>(integrator, layers, scratch, next, lanes, light);
+          break;
+        case 2:
+          compose_together<2>(integrator, layers, scratch, next, lanes, light);
+          break;
+        case 3:
+          compose_together<3>(integrator, layers, scratch, next, lanes, light);
+          break;
+        default:
+          compose_together<4>(integrator, layers, scratch, next, lanes, light);
+      }
+      steps += static_cast<unsigned>(__builtin_popcount(lanes));
+      n += size;
+    }
+    if (!any(light.through > Lanes(0.0F))) break;
   }
   result = light;
   return steps;
@@ -276,8 +351,9 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   float columns[lane_count];
   float rows[lane_count];
   for (int i = 0; i < lane_count; ++i) {
-    columns[i] = static_cast<float>(lattice.column_phase + (block.column + i % block_side) * lattice.column_stride);
-    rows[i] = static_cast<float>(lattice.row_phase + (block.row + i / block_side) * lattice.row_stride);
+    columns[i] = static_cast<float>(lattice.column_phase + (block.column + i % block_side) * lattice.column_stride -
+                                    tile_middle);
+    rows[i] = static_cast<float>(lattice.row_phase + (block.row + i / block_side) * lattice.row_stride - tile_middle);
   }
   const Pixels pixels{load(columns), load(rows)};
   std::uint32_t count = 0;
@@ -292,15 +368,7 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
   } else if constexpr (Integrator::prepares) {
     steps = compose_prepared(integrator, scratch, count, light);
   } else {
-    for (std::uint32_t n = 0; n < count; ++n) {
-      const std::uint32_t next = scratch.order[n];
-      const unsigned lanes = scratch.lanes[next];
-      if (n + values_ahead < count) prefetch(integrator.record(scratch.record[scratch.order[n + values_ahead]]));
-      steps += static_cast<unsigned>(__builtin_popcount(lanes));
-      compose(integrator, layers, scratch.record[next], load(scratch.u_in + 16 * next), load(scratch.u_out + 16 * next),
-              lanes, light);
-      if (!any(light.through > Lanes(0.0F))) break;
-    }
+    steps = compose_in_order(integrator, layers, scratch, count, light);
   }
   layers.lay_rest(light);
   finish_opaque(light);

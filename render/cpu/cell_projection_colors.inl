@@ -13,9 +13,9 @@ class BlockOptics {
         perspective_(view.perspective) {
     const float pixel = static_cast<float>(view.pixel);
     const Lanes x = multiply_add(pixels.column, Lanes(pixel),
-                                 Lanes(static_cast<float>(view.left + view.pixel * block.tile_column)));
-    const Lanes y =
-        multiply_add(pixels.row, Lanes(-pixel), Lanes(static_cast<float>(view.top - view.pixel * block.tile_row)));
+                                 Lanes(static_cast<float>(view.left + view.pixel * (block.tile_column + tile_middle))));
+    const Lanes y = multiply_add(pixels.row, Lanes(-pixel),
+                                 Lanes(static_cast<float>(view.top - view.pixel * (block.tile_row + tile_middle))));
     const Lanes length = view.perspective ? sqrt(multiply_add(x, x, multiply_add(y, y, Lanes(1.0F)))) : Lanes(1.0F);
     extinction_ = length * Lanes(optics.alpha_length);
   }
@@ -26,6 +26,18 @@ class BlockOptics {
   const Lanes& extinction() const { return extinction_; }
 
  protected:
+  // Of a segment, u_in <= u_out: z - z_ref where it begins, and how deep it is, to a few roundings of either.
+  struct Stretch {
+    Lanes z_in, depth;
+  };
+  Stretch stretch(const Lanes& u_in, const Lanes& u_out) const {
+    if (!perspective_) return {u_in, u_out - u_in};
+    const Lanes near_side = Lanes(1.0F) - u_in;
+    const Lanes far_side = Lanes(1.0F) - u_out;
+    const Lanes scale = reference_ * reciprocal(near_side * far_side);
+    return {scale * (u_in * far_side), scale * (u_out - u_in)};
+  }
+
   // Of a segment, u_in < u_out where there is one: its ends' depths from the cell's own, and alpha_length times the
   // way, zero where there is none (where the depths are finite all the same).
   struct Way {
@@ -53,7 +65,14 @@ template <class Rule>
 class ColorIntegrator : public BlockOptics {
  public:
   ColorIntegrator(const View& view, const CellOptics& optics, const BlockInput& block, const Pixels& pixels)
-      : BlockOptics(view, optics, block, pixels), rule_(optics), colors_(block.colors), ranges_(block.ranges) {}
+      : BlockOptics(view, optics, block, pixels),
+        rule_(optics),
+        planes_(block.planes),
+        colors_(block.colors),
+        ranges_(block.ranges),
+        from_eye_(view.perspective ? static_cast<float>(view.reference) : 1.0F),
+        widening_(view.perspective ? 1.0F : 0.0F),
+        farthest_(view.farthest) {}
 
   static constexpr bool prepares = false;
   using Record = CellColors;
@@ -61,33 +80,64 @@ class ColorIntegrator : public BlockOptics {
 
   // Lays the segment of one cell behind what is in `light`.
   void compose(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Light& light) const {
-    const CellColors& cell = colors_[number];
-    const Way w = way(u_in, u_out, cell.depth);
+    const Mask every[1] = {mask_of(0xFFFFU)};
+    lay<1>(&number, every, u_in, u_out, light);
+  }
+
+  // Lays `count` cells, each on rays of its own (the first on all that are not another's); those that are wild alone.
+  template <int count>
+  void lay(const std::uint32_t* numbers, const Mask* rays, const Lanes& u_in, const Lanes& u_out, Light& light) const {
+    const CellColors* cells[count];
+    for (int n = 0; n < count; ++n) cells[n] = &colors_[numbers[n]];
+    Lanes depth(planes_[numbers[0]].depth);
+    for (int n = 1; n < count; ++n) depth = select(rays[n], Lanes(planes_[numbers[n]].depth), depth);
+    const auto of_rays = [&](const float(CellColors::*channels)[4], int k) {
+      Lanes value((cells[0]->*channels)[k]);
+      for (int n = 1; n < count; ++n) value = select(rays[n], Lanes((cells[n]->*channels)[k]), value);
+      return value;
+    };
+    const Lanes begin = min(u_in, farthest_);
+    const Stretch s = stretch(begin, max(begin, u_out));
+    const Lanes z_in = s.z_in - depth;
+    const Lanes h_in = multiply_add(s.z_in, widening_, from_eye_);
     Rgba near_end;
-    Rgba far_end;
+    Rgba change;
     for (int k = 0; k < 4; ++k) {
-      const Lanes base = affine(pixels_, cell.base_a[k], cell.base_b[k], cell.base_c[k]);
-      const Lanes slope = affine(pixels_, cell.slope_a[k], cell.slope_b[k], cell.slope_c[k]);
-      near_end.channel[k] = multiply_add(w.z_in, slope, base);
-      far_end.channel[k] = multiply_add(w.z_out, slope, base);
+      const Lanes slope_c = of_rays(&CellColors::slope_c, k);
+      const Lanes across = multiply_add(of_rays(&CellColors::slope_a, k), pixels_.column,
+                                        of_rays(&CellColors::slope_b, k) * pixels_.row);
+      near_end.channel[k] = multiply_add(h_in, across, multiply_add(z_in, slope_c, of_rays(&CellColors::base, k)));
+      change.channel[k] = s.depth * multiply_add(across, widening_, slope_c);
     }
-    if (cell.wild != 0) {
-      const ColorRange& range = ranges_[number];
+    if (count == 1 && planes_[numbers[0]].wild) {
+      const ColorRange& range = ranges_[numbers[0]];
       for (int k = 0; k < 4; ++k) {
+        const Lanes far_end = clamp(near_end.channel[k] + change.channel[k], range.low[k], range.high[k]);
         near_end.channel[k] = clamp(near_end.channel[k], range.low[k], range.high[k]);
-        far_end.channel[k] = clamp(far_end.channel[k], range.low[k], range.high[k]);
+        change.channel[k] = far_end - near_end.channel[k];
       }
     }
     // However small, a negative opacity would shine where extinction is large.
+    const Lanes far_opacity = max(near_end.channel[3] + change.channel[3], Lanes(0.0F));
     near_end.channel[3] = max(near_end.channel[3], Lanes(0.0F));
-    far_end.channel[3] = max(far_end.channel[3], Lanes(0.0F));
-    rule_.add(near_end, far_end, w.length, light);
+    const Lanes length = s.depth * extinction();
+    if constexpr (std::is_same_v<Rule, ClosedForm>) {
+      rule_.add_change(near_end, change, far_opacity, length, light);
+    } else {
+      Rgba far_end;
+      for (int k = 0; k < 3; ++k) far_end.channel[k] = near_end.channel[k] + change.channel[k];
+      far_end.channel[3] = far_opacity;
+      rule_.add(near_end, far_end, length, light);
+    }
   }
 
  private:
   Rule rule_;
+  const CellPlanes* planes_;
   const CellColors* colors_;
   const ColorRange* ranges_;
+  Lanes from_eye_, widening_;  // h = from_eye + widening (z - z_ref)
+  Lanes farthest_;
 };
 
 }  // namespace atomesh::ATOMESH_ISA

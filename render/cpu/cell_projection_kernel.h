@@ -8,7 +8,7 @@
 // its corners in ascending order of vertex index, so both cells at a face compute bit-identical depths of it: where one
 // cell ends the next begins, no ray misses or doubles a cell, and lengths along a ray telescope.
 //
-// The coefficients are floats about the tile's first pixel. Of a face seen so nearly edge-on that their rounding would
+// The coefficients are floats about the tile's middle. Of a face seen so nearly edge-on that their rounding would
 // move it noticeably, they are split in two floats, the first parts so short that they add up without rounding: such a
 // face's place in the picture is right to 2^-36 of a pixel or so.
 //
@@ -29,6 +29,7 @@
 namespace atomesh::cell_projection {
 
 inline constexpr int tile_side = 32;  // pixels
+inline constexpr int tile_middle = tile_side / 2;
 inline constexpr int block_side = 4;  // pixels; a block's 16 pixels are the lanes of a register
 inline constexpr int blocks_per_side = tile_side / block_side;
 inline constexpr int blocks_per_tile = blocks_per_side * blocks_per_side;  // bits of a BlockSet
@@ -54,6 +55,7 @@ struct View {
   float nearest;       // u of the eye's plane, where a ray that starts inside begins
   float farthest;      // u no plane lies behind
   double order_blend;  // 0: cells in order of their circumsphere's power (Delaunay); 1: of their centroid
+  double order_doubt;  // how little is made of where the circumspheres of flat cells have their centres
   float plain_reach;   // faces whose u(i, j) in a tile reach beyond this have their coefficients split
 };
 
@@ -61,46 +63,39 @@ struct View {
 // column_stride, row_phase + j · row_stride). Blocks are 4×4 of the grid's pixels; block b is in column b % 8, row b
 // / 8.
 
-// A cell's four faces as affine functions u(i, j) = a i + b j + c of the pixel within the tile: first those the ray
-// enters by, then those it leaves by. The first is one it enters by and the last one it leaves by; `enters` says of the
-// second and the third: +far where the ray enters by the face, -far where it leaves by it, far being plain_far where
-// the planes are all there is to know, refined_far where there is a CellRefinement. One cache line.
-inline constexpr float plain_far = 3e38F;
-inline constexpr float refined_far = 1e38F;
+// A cell's four faces as affine functions u(i, j) = a i + b j + c of the pixel, counted from the tile's pixel
+// (tile_middle, tile_middle): first those the ray enters by, then those it leaves by. One cache line.
 struct alignas(64) CellPlanes {
   float a[4], b[4], c[4];
-  float enters[2];
   std::uint32_t columns;  // of the lattice's grid, that the cell's corners lie between; bit i is column i
   std::uint32_t rows;
+  float depth;           // where CellColors are counted from: z - z_ref
+  std::uint8_t entries;  // faces that the ray enters by, 1 to 3; 0 where the eye is inside
+  bool refined;          // whether there is a CellRefinement; there is where `entries` is 0
+  bool wild;             // whether there is a ColorRange
 };
 
-// What is seldom needed: second parts of the planes' coefficients, and whether the ray enters by none of the faces.
+// What is seldom needed: second parts of the planes' coefficients.
 struct alignas(64) CellRefinement {
   float a[4], b[4], c[4];
-  std::uint32_t eye_inside;
 };
 
 // Blocks of a tile: bit b is block b, rows first.
 using BlockSet = std::uint64_t;
 
-// An attribute of a cell: its value at pixel (i, j) and depth z is
-//   base(i, j) + (z - z_cell) · slope(i, j),  both affine in the pixel,
-// clamped to the range of the cell's vertices.
-
-// RGBA, clamped only where rounding may leave the range by more than 2e-6 (`wild`). Two cache lines, and one that is
-// seldom read.
+// RGBA of a cell at pixel (i, j), counted from the same, and depth z:
+//   base + h (slope_a i + slope_b j) + (z - z_cell) slope_c,  h = z in perspective, 1 in parallel projection,
+// clamped to the range of the cell's vertices where rounding may leave it by more than 2e-6. One cache line.
 struct alignas(64) CellColors {
-  float base_a[4], base_b[4], base_c[4];
-  float slope_a[4], slope_b[4], slope_c[4];
-  float depth;  // z_cell - z_ref
-  std::uint32_t wild;
+  float base[4], slope_a[4], slope_b[4], slope_c[4];
 };
 struct ColorRange {
   float low[4], high[4];
 };
 
-// One scalar; `base` is counted from `reference`, and (i, j) from the pixel at `column` and `row`, where the centroid
-// is seen. Clamped only where rounding may leave the range by more than a few millionths of it (`wild`).
+// One scalar: base(i, j) + (z - z_cell) · slope(i, j), both affine in the pixel, clamped to the range of the cell's
+// vertices only where rounding may leave it by more than a few millionths of it (`wild`). `base` is counted from
+// `reference`, and (i, j) from the pixel at `column` and `row`, where the centroid is seen.
 struct alignas(64) CellScalar {
   float base_a, base_b, base_c;
   float slope_a, slope_b, slope_c;  // half the slope
@@ -166,19 +161,19 @@ struct SetupInput {
 struct SetupOutput {
   CellPlanes* planes;
   CellRefinement* refinements;  // where the planes say that there is one
-  CellColors* colors;           // these two where values are RGBA
-  ColorRange* ranges;
-  CellScalar* scalars;  // this where they are scalars, all but its intervals
-  double* keys;         // ascending: front to back
+  CellColors* colors;           // where values are RGBA
+  ColorRange* ranges;           // of those that are wild
+  CellScalar* scalars;          // this where they are scalars, all but its intervals
+  double* keys;                 // ascending: front to back
   BlockSet* blocks;  // wanted ones that the cell may cover a pixel of; where there are none the others are not filled
   std::uint32_t* per_block;  // how many cells each of the tile's blocks has
 };
 
 // Lines of the lists that a block's cells pass through; sized by the driver for the longest list.
 struct BlockScratch {
-  float* u_in;            // 16 per cell
-  float* u_out;           // 16 per cell
-  std::uint16_t* lanes;   // per cell: pixels that meet it
+  float* u_in;           // 16 per cell
+  float* u_out;          // 16 per cell
+  std::uint32_t* lanes;  // per cell: pixels that meet it; 16 bits higher those that it shares with no cell laid with it
   std::uint32_t* record;  // per cell: which of the block's cells it is
   std::uint32_t* order;   // per cell
   std::uint32_t* moved;   // per cell

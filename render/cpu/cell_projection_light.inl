@@ -6,7 +6,7 @@
 
 namespace atomesh::ATOMESH_ISA {
 
-// Pixels of a block within its tile.
+// Pixels of a block, counted from the middle of its tile.
 struct Pixels {
   Lanes column;
   Lanes row;
@@ -49,16 +49,23 @@ static inline Rgba mix(const Rgba& a, const Rgba& b, const Lanes& t) {
   return color;
 }
 
-// A piece along which colours go linearly from end to end.
-static inline void add(const Rgba& near_end, const Rgba& far_end, const optics::Piece<Lanes>& piece, Light& light) {
+// A piece along which colours go linearly from `near_end` by `change`.
+static inline void add_change(const Rgba& near_end, const Rgba& change, const optics::Piece<Lanes>& piece,
+                              Light& light) {
   const Lanes first = light.through * piece.opacity;
   const Lanes second = light.through * piece.ramp;
   Lanes* const gathered[3] = {&light.red, &light.green, &light.blue};
   for (int k = 0; k < 3; ++k) {
-    *gathered[k] = multiply_add(first, near_end.channel[k],
-                                multiply_add(second, far_end.channel[k] - near_end.channel[k], *gathered[k]));
+    *gathered[k] = multiply_add(first, near_end.channel[k], multiply_add(second, change.channel[k], *gathered[k]));
   }
   take(first, light);
+}
+
+// The same of what they are at both ends.
+static inline void add(const Rgba& near_end, const Rgba& far_end, const optics::Piece<Lanes>& piece, Light& light) {
+  Rgba change;
+  for (int k = 0; k < 3; ++k) change.channel[k] = far_end.channel[k] - near_end.channel[k];
+  add_change(near_end, change, piece, light);
 }
 
 }  // namespace atomesh::ATOMESH_ISA

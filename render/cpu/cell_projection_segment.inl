@@ -92,6 +92,15 @@ class ClosedForm {
     const Lanes mean = density_near + half_difference;
     ATOMESH_ISA::add(near_end, far_end, integrate(mean, density_near, half_difference), light);
   }
+  // The same where what RGB changes by from end to end is known.
+  void add_change(const Rgba& near_end, const Rgba& change, const Lanes& far_opacity, const Lanes& length,
+                  Light& light) const {
+    const Lanes density_near = near_end.channel[3] * length;
+    const Lanes density_far = far_opacity * length;
+    const Lanes half_difference = (density_far - density_near) * Lanes(0.5F);
+    const Lanes mean = density_near + half_difference;
+    ATOMESH_ISA::add_change(near_end, change, integrate(mean, density_near, half_difference), light);
+  }
 };
 
 // 1 - e^{-x} for x >= 0, to float's relative precision where x is small.

@@ -42,6 +42,18 @@ static inline Doubles to_doubles(const Floats& v) {
 }
 #endif
 
+static inline Doubles square_root(const Doubles& v) {
+#if defined(__AVX512F__)
+  return _mm512_sqrt_pd(v);
+#elif defined(__AVX__)
+  return _mm256_sqrt_pd(v);
+#else
+  Doubles root;
+  for (int l = 0; l < group_size; ++l) root[l] = __builtin_sqrt(v[l]);
+  return root;
+#endif
+}
+
 // For each set of faces (bit k: face k): its faces first, then the others.
 struct FaceLists {
   I4 list[16];
@@ -63,6 +75,14 @@ constexpr FaceLists make_face_lists() {
 }
 
 constexpr FaceLists face_lists = make_face_lists();
+
+static inline D4 all_of(double v) {
+#if defined(__AVX__)
+  return _mm256_set1_pd(v);
+#else
+  return D4{v, v, v, v};
+#endif
+}
 
 static inline D4 multiply_add(const D4& a, const D4& b, const D4& c) {
 #if defined(__FMA__)
@@ -103,8 +123,12 @@ struct CellGroup {
   F4 cell_a[group_size], cell_b[group_size], cell_c[group_size];  // the same, cell by cell
   Ints entries;                                                   // bit k: the ray enters by face k
   Ints steep;                                                     // bit k: of face k the coefficients are split
-  std::int32_t first[2 * group_size];                             // column and row of each cell, of the lattice's grid,
-  std::int32_t last[2 * group_size];                              // between the corners
+  Doubles reach;                                                  // how far from zero one of the planes gets
+  // Of each cell column, then row: what of the lattice's grid lies between the corners.
+  std::int32_t pixels[2 * group_size];  // a bit each
+  std::int32_t first_block[2 * group_size];
+  std::int32_t last_block[2 * group_size];
+  std::int32_t blocks[2 * group_size];  // a bit each; none where there are no pixels
 };
 
 static inline void transpose(const Doubles* doubles, F4* cells) {
@@ -143,8 +167,7 @@ static inline void load_group(const SetupInput& input, std::size_t first, CellGr
   const __m512i high = four(4);
   const __m512i by_corner = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
   const __m512i corners01 = _mm512_permutex2var_epi32(low, by_corner, high);
-  const __m512i corners23 =
-      _mm512_permutex2var_epi32(low, _mm512_add_epi32(by_corner, _mm512_set1_epi32(2)), high);
+  const __m512i corners23 = _mm512_permutex2var_epi32(low, _mm512_add_epi32(by_corner, _mm512_set1_epi32(2)), high);
   __m256i corner[4] = {_mm512_castsi512_si256(corners01), _mm512_extracti64x4_epi64(corners01, 1),
                        _mm512_castsi512_si256(corners23), _mm512_extracti64x4_epi64(corners23, 1)};
   unsigned odd = 0;
@@ -163,9 +186,7 @@ static inline void load_group(const SetupInput& input, std::size_t first, CellGr
     const auto vertex = [&](int l) {
       return _mm256_load_pd(reinterpret_cast<const double*>(input.vertices + g.vertex[k][l]));
     };
-    const auto pair = [&](int l) {
-      return _mm512_insertf64x4(_mm512_castpd256_pd512(vertex(l)), vertex(l + 4), 1);
-    };
+    const auto pair = [&](int l) { return _mm512_insertf64x4(_mm512_castpd256_pd512(vertex(l)), vertex(l + 4), 1); };
     const __m512d p0 = pair(0);
     const __m512d p1 = pair(1);
     const __m512d p2 = pair(2);
@@ -266,7 +287,7 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   largest = largest > abs_c ? largest : abs_c;
   // Far beyond any depth, and nowhere near where floats end when it is multiplied.
   const Doubles limit = zero + 1e20;
-  Doubles reach = tile_side * (abs_a + abs_b) + abs_c;
+  Doubles reach = tile_middle * (abs_a + abs_b) + abs_c;
   if (any_above(largest, 1e20)) {
     const Doubles scale = largest > limit ? limit / largest : zero + 1.0;
     a *= scale;
@@ -277,6 +298,7 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   g.a[k] = a;
   g.b[k] = b;
   g.c[k] = c;
+  g.reach = g.reach > reach ? g.reach : reach;
   g.steep |= __builtin_convertvector(reach > zero + view.plain_reach, Ints) & (1 << k);
 
   // The ray enters by the faces whose outward normal looks back at it. Which way is outward follows from the order of
@@ -286,7 +308,8 @@ static __attribute__((noinline)) void find_planes(const View& view, double x0, d
   g.entries |= (back ^ inward) & (1 << k);
 }
 
-// The lattice's pixels between the corners, those within pixel_margin included; all where a corner is not before the eye.
+// The lattice's pixels between the corners, those within pixel_margin included; all where a corner is not before the
+// eye.
 class BoxFinder {
  public:
   explicit BoxFinder(const SetupInput& input) {
@@ -317,20 +340,25 @@ class BoxFinder {
     const Places first = from > zero ? (from < end_ ? from : end_) : zero;
     const Places last = to > zero ? (to < end_ ? to : end_) : zero;
     const PlaceBits whole = __builtin_convertvector(first, PlaceBits);
+    const PlaceBits one = PlaceBits{} + 1;
     const PlaceBits first_pixel = behind ? PlaceBits{} : whole - (__builtin_convertvector(whole, Places) < first);
-    const PlaceBits end_pixel = __builtin_convertvector(behind ? end_ : last, PlaceBits) - 1;
-    __builtin_memcpy(g.first, &first_pixel, sizeof g.first);
-    __builtin_memcpy(g.last, &end_pixel, sizeof g.last);
+    const PlaceBits last_pixel = __builtin_convertvector(behind ? end_ : last, PlaceBits) - 1;
+    const PlaceBits some = first_pixel <= last_pixel;
+    const PlaceBits begin = some ? first_pixel : PlaceBits{};
+    const PlaceBits end = some ? last_pixel : PlaceBits{};
+    const PlaceBits first_block = begin / block_side;
+    const PlaceBits last_block = end / block_side;
+    const PlaceBits pixels = ((one << end << 1) - (one << begin));
+    const PlaceBits blocks = ((one << last_block << 1) - (one << first_block)) & some;
+    __builtin_memcpy(g.pixels, &pixels, sizeof pixels);
+    __builtin_memcpy(g.first_block, &first_block, sizeof first_block);
+    __builtin_memcpy(g.last_block, &last_block, sizeof last_block);
+    __builtin_memcpy(g.blocks, &blocks, sizeof blocks);
   }
 
  private:
   Places begin_, per_stride_, end_;
 };
-
-// Bits first … last.
-static inline std::uint32_t bits_between(std::int32_t first, std::int32_t last) {
-  return (2U << last) - (1U << first);
-}
 
 // Of each set of rows of blocks, all blocks of the first column.
 struct RowSpread {
@@ -350,7 +378,7 @@ constexpr RowSpread row_spread = make_row_spread();
 // u(i, j) = (a i + b j + c) + (rest): the first part in multiples of so large a number that floats lose nothing of it
 // anywhere in the tile.
 static inline void split_plane(double a, double b, double c, float* first, float* rest) {
-  const double reach = (tile_side - 1) * ((a < 0.0 ? -a : a) + (b < 0.0 ? -b : b)) + (c < 0.0 ? -c : c);
+  const double reach = tile_middle * ((a < 0.0 ? -a : a) + (b < 0.0 ? -b : b)) + (c < 0.0 ? -c : c);
   std::uint64_t exponent;
   __builtin_memcpy(&exponent, &reach, sizeof exponent);
   // Adding 1.5 · 2^52 such multiples, of which the reach has 2^22 to 2^23, rounds to a multiple.
@@ -370,38 +398,28 @@ static inline BlockSet write_planes(const CellGroup& g, int l, const BlockTest& 
                                     CellPlanes& plane, CellRefinement& refinement) {
   const auto entries = static_cast<unsigned>(g.entries[l]);
   if (entries == 15U) return 0;  // turned over by rounding
-  const int left = g.first[2 * l];
-  const int right = g.last[2 * l];
-  const int top = g.first[2 * l + 1];
-  const int bottom = g.last[2 * l + 1];
-  if (left > right || top > bottom) return 0;
-  const int left_block = left / block_side;
-  const int right_block = right / block_side;
-  const int top_block = top / block_side;
-  const int bottom_block = bottom / block_side;
-  const BlockSet between =
-      bits_between(left_block, right_block) * row_spread.rows[bits_between(top_block, bottom_block)] & wanted;
+  const BlockSet between = static_cast<BlockSet>(g.blocks[2 * l]) * row_spread.rows[g.blocks[2 * l + 1]] & wanted;
   if (between == 0) return 0;
   const I4 list = face_lists.list[entries];
   const F4 a = __builtin_shuffle(g.cell_a[l], list);
   const F4 b = __builtin_shuffle(g.cell_b[l], list);
   const F4 c = __builtin_shuffle(g.cell_c[l], list);
   const int entry_count = __builtin_popcount(entries);
-  const BlockSet blocks = entries == 0 ? between : test.blocks(a, b, c, entry_count, left_block, right_block,
-                                                                    top_block, bottom_block, between);
+  const BlockSet blocks =
+      entries == 0 ? between
+                   : test.blocks(a, b, c, entry_count, static_cast<float>(2e-6 * g.reach[l]), g.first_block[2 * l],
+                                 g.last_block[2 * l], g.first_block[2 * l + 1], g.last_block[2 * l + 1], between);
   if (blocks == 0) return 0;
   store4(plane.a, a);
   store4(plane.b, b);
   store4(plane.c, c);
-  plane.columns = bits_between(left, right);
-  plane.rows = bits_between(top, bottom);
-  const bool refined = g.steep[l] != 0 || entries == 0;
-  const float far = refined ? refined_far : plain_far;
-  plane.enters[0] = entry_count >= 2 ? far : -far;
-  plane.enters[1] = entry_count >= 3 ? far : -far;
-  if (refined) {
+  plane.columns = static_cast<std::uint32_t>(g.pixels[2 * l]);
+  plane.rows = static_cast<std::uint32_t>(g.pixels[2 * l + 1]);
+  plane.entries = static_cast<std::uint8_t>(entry_count);
+  plane.wild = false;
+  plane.refined = g.steep[l] != 0 || entries == 0;
+  if (plane.refined) {
     refinement = {};
-    refinement.eye_inside = entries == 0 ? 1 : 0;
     for (int n = 0; n < 4; ++n) {
       const int k = list[n];
       if ((g.steep[l] >> k & 1) == 0) continue;

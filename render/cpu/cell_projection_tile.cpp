@@ -23,9 +23,10 @@ SetupOutput Tile::resize(std::size_t count, bool colored) {
           scalars.data(), keys.data(),        blocks.data(), per_block_.data()};
 }
 
-// Keys are resolved to 2^-32 of their range: a radix sort of three digits.
+// Keys are resolved to 2^-22 of their range: a radix sort of two digits.
 void Tile::sort() {
   constexpr int digit = 11;
+  constexpr std::size_t digits = 2;
   constexpr std::uint32_t digit_mask = (1U << digit) - 1;
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
@@ -34,17 +35,18 @@ void Tile::sort() {
     low = std::min(low, keys[n]);
     high = std::max(high, keys[n]);
   }
-  const double scale = high > low ? (std::ldexp(1.0, 32) - 1.0) / (high - low) : 0.0;
-  std::array<std::array<std::uint32_t, 1 << digit>, 3> places{};
+  constexpr double largest = (1 << (digit * digits)) - 1;
+  const double scale = high > low ? largest / (high - low) : 0.0;
+  std::array<std::array<std::uint32_t, 1 << digit>, digits> places{};
   sorted_.clear();
   for (std::size_t n = 0; n < count_; ++n) {
     if (blocks[n] == 0) continue;
     const auto key = static_cast<std::uint32_t>((keys[n] - low) * scale);
     sorted_.push_back({key, static_cast<std::uint32_t>(n)});
-    for (std::size_t pass = 0; pass < 3; ++pass) ++places[pass][key >> (digit * pass) & digit_mask];
+    for (std::size_t pass = 0; pass < digits; ++pass) ++places[pass][key >> (digit * pass) & digit_mask];
   }
   sorting_.resize(sorted_.size());
-  for (std::size_t pass = 0; pass < 3; ++pass) {
+  for (std::size_t pass = 0; pass < digits; ++pass) {
     std::uint32_t place = 0;
     for (std::uint32_t& at : places[pass]) place += std::exchange(at, place);
     for (const Entry& entry : sorted_) {
@@ -58,13 +60,20 @@ void Tile::list_blocks() {
   sort();
   begin_.assign(blocks_per_tile + 1, 0);
   for (std::size_t b = 0; b < blocks_per_tile; ++b) begin_[b + 1] = begin_[b] + per_block_[b];
-  cells_.resize(begin_[blocks_per_tile]);
-  std::array<std::uint32_t, blocks_per_tile> fill{};
-  std::copy_n(begin_.begin(), blocks_per_tile, fill.begin());
+  // A place more, for what is listed under no block: no branch then guesses how many blocks a cell has, up to four.
+  cells_.resize(begin_[blocks_per_tile] + 1);
+  std::array<std::uint32_t, blocks_per_tile + 1> fill{};
+  std::copy(begin_.begin(), begin_.end(), fill.begin());
   for (const Entry& entry : sorted_) {
-    for (BlockSet rest = blocks[entry.cell]; rest != 0; rest &= rest - 1) {
-      cells_[fill[static_cast<std::size_t>(std::countr_zero(rest))]++] = entry.cell;
-    }
+    BlockSet rest = blocks[entry.cell];
+    do {
+      for (int i = 0; i < 4; ++i) {
+        std::uint32_t& at = fill[static_cast<std::size_t>(std::countr_zero(rest))];
+        cells_[at] = entry.cell;
+        at += rest != 0 ? 1U : 0U;
+        rest &= rest - 1;
+      }
+    } while (rest != 0);
   }
 }
 

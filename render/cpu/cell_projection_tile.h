@@ -55,7 +55,7 @@ class Tile {
   std::vector<std::uint32_t> cells_;
   std::vector<float> floats_;
   std::vector<std::uint32_t> numbers_;
-  std::vector<std::uint16_t> lanes_;
+  std::vector<std::uint32_t> lanes_;
 };
 
 // Lends tiles to the threads that draw.

@@ -10,49 +10,70 @@ struct CellSlopes {
   Doubles extent;               // no corner is farther from it
 };
 
-// Cell l of vertices with RGBA.
-static inline void write_colors(const View& view, const SetupInput& input, double x0, double y0, const CellGroup& g,
-                                const CellSlopes& s, int l, CellColors& colors, ColorRange& range) {
-  F4 low{};
-  F4 high{};
-  D4 gx{};
-  D4 gy{};
-  D4 gz{};
-  D4 mean{};
+// What the corners' colours count in CellColors, and the depth those are counted from.
+struct ColorWeights {
+  Doubles base[4], slope_a[4], slope_b[4], slope_c[4];
+  Floats depth;
+  Floats extent;
+  Floats far;  // at least h of the farthest corner, times half the tile's pixels
+};
+
+static inline void find_weights(const View& view, double x0, double y0, const CellSlopes& s, ColorWeights& w) {
+  const Doubles one = Doubles{} + 1.0;
+  w.depth = to_floats(s.mz - view.reference);
+  const Doubles z = to_doubles(w.depth) + view.reference;
+  const Doubles h = view.perspective ? z : one;
+  const Doubles dx = h * x0 - s.mx;
+  const Doubles dy = h * y0 - s.my;
+  const Doubles dz = z - s.mz;
   for (int v = 0; v < 4; ++v) {
-    F4 here;
-    __builtin_memcpy(&here, input.values + 4 * static_cast<std::size_t>(g.vertex[v][l]), sizeof here);
-    low = v == 0 ? here : (here < low ? here : low);
-    high = v == 0 ? here : (here > high ? here : high);
-    const D4 exact = to_doubles(here);
-    mean += 0.25 * exact;
-    gx = multiply_add(exact, D4{} + s.wx[v][l], gx);
-    gy = multiply_add(exact, D4{} + s.wy[v][l], gy);
-    gz = multiply_add(exact, D4{} + s.wz[v][l], gz);
+    w.base[v] = (s.wx[v] * dx + s.wy[v] * dy) + (s.wz[v] * dz + 0.25);
+    w.slope_a[v] = s.wx[v] * view.pixel;
+    w.slope_b[v] = s.wy[v] * -view.pixel;
+    w.slope_c[v] = view.perspective ? s.wz[v] + (s.wx[v] * x0 + s.wy[v] * y0) : s.wz[v];
   }
-  const double across = view.perspective ? view.pixel : 0.0;
-  const double h = view.perspective ? s.mz[l] : 1.0;
-  const F4 base_a = to_floats(gx * (h * view.pixel));
-  const F4 base_b = to_floats(gy * (-h * view.pixel));
-  const F4 base_c = to_floats(mean + gx * (h * x0 - s.mx[l]) + gy * (h * y0 - s.my[l]));
-  const F4 slope_a = to_floats(gx * across);
-  const F4 slope_b = to_floats(gy * -across);
-  const F4 slope_c = to_floats(view.perspective ? gz + gx * x0 + gy * y0 : gz);
-  store4(colors.base_a, base_a);
-  store4(colors.base_b, base_b);
-  store4(colors.base_c, base_c);
+  w.extent = to_floats(s.extent);
+  const Floats depth = to_floats(h);
+  const Floats zero{};
+  w.far = static_cast<float>(tile_middle) *
+          (view.perspective ? (depth < zero ? -depth : depth) + w.extent : to_floats(one));
+}
+
+// Cell l of vertices with RGBA. Returns whether it is wild.
+static inline bool write_colors(const SetupInput& input, const CellGroup& g, const ColorWeights& w, int l,
+                                CellColors& colors, ColorRange& range) {
+  F4 corner[4];
+  D4 sum[4];
+  for (int v = 0; v < 4; ++v) {
+    __builtin_memcpy(&corner[v], input.values + 4 * static_cast<std::size_t>(g.vertex[v][l]), sizeof(F4));
+    const D4 exact = to_doubles(corner[v]);
+    const double weights[4] = {w.base[v][l], w.slope_a[v][l], w.slope_b[v][l], w.slope_c[v][l]};
+    for (int n = 0; n < 4; ++n)
+      sum[n] = v == 0 ? exact * all_of(weights[n]) : multiply_add(exact, all_of(weights[n]), sum[n]);
+  }
+  const F4 base = to_floats(sum[0]);
+  const F4 slope_a = to_floats(sum[1]);
+  const F4 slope_b = to_floats(sum[2]);
+  const F4 slope_c = to_floats(sum[3]);
+  store4(colors.base, base);
   store4(colors.slope_a, slope_a);
   store4(colors.slope_b, slope_b);
   store4(colors.slope_c, slope_c);
-  colors.depth = static_cast<float>(s.mz[l] - view.reference);
   // Where the rounding of the largest terms is at most 2e-6 they are not clamped.
-  constexpr float side = tile_side;
-  const F4 reach =
-      side * (magnitude(base_a) + magnitude(base_b)) + magnitude(base_c) +
-      static_cast<float>(s.extent[l]) * (side * (magnitude(slope_a) + magnitude(slope_b)) + magnitude(slope_c));
-  colors.wild = any_above(reach, 32.0F) ? 1 : 0;
-  store4(range.low, low);
-  store4(range.high, high);
+  const F4 reach = multiply_add(all_of(w.far[l]), magnitude(slope_a) + magnitude(slope_b),
+                                multiply_add(all_of(w.extent[l]), magnitude(slope_c), magnitude(base)));
+  const bool wild = any_above(reach, 32.0F);
+  if (wild) {
+    F4 low = corner[0];
+    F4 high = corner[0];
+    for (int v = 1; v < 4; ++v) {
+      low = corner[v] < low ? corner[v] : low;
+      high = corner[v] > high ? corner[v] : high;
+    }
+    store4(range.low, low);
+    store4(range.high, high);
+  }
+  return wild;
 }
 
 // To the nearest whole number within a tile and its surroundings: further away (the centroid seen at the level of the
@@ -122,18 +143,20 @@ static inline void write_scalars(const View& view, const SetupInput& input, doub
 }
 
 static void setup(const View& view, const SetupInput& input, const SetupOutput& output) {
-  const double x0 = view.left + view.pixel * input.column;
-  const double y0 = view.top - view.pixel * input.row;
+  const double x0 = view.left + view.pixel * (input.column + tile_middle);
+  const double y0 = view.top - view.pixel * (input.row + tile_middle);
   const double keep = 1.0 - view.order_blend;
   const BlockTest test(input.lattice);
   const BoxFinder boxes(input);
   CellGroup g;
   CellSlopes s;
+  ColorWeights weights;
   for (std::size_t first = 0; first < input.count; first += group_size) {
     prefetch_groups(input, first);
     load_group(input, first, g);
     g.entries = Ints{};
     g.steep = Ints{};
+    g.reach = Doubles{};
     boxes.find(g);
     for (int k = 0; k < 4; ++k) find_planes(view, x0, y0, k, g);
     transpose(g.a, g.cell_a);
@@ -169,20 +192,28 @@ static void setup(const View& view, const SetupInput& input, const SetupOutput& 
       qy += squares[k] * s.wy[k];
       qz += squares[k] * s.wz[k];
     }
+    if (view.order_doubt > 0.0) {
+      const Doubles squared = volume6 * volume6;
+      const Doubles trust = squared / (squared + (view.order_doubt * size * size * size + 1e-300));
+      qx *= trust;
+      qy *= trust;
+      qz *= trust;
+    }
     const Doubles keys = view.perspective ? s.mx * s.mx + s.my * s.my + s.mz * s.mz +
                                                 keep * (qx * s.mx + qy * s.my + qz * s.mz - 0.25 * size)
                                           : s.mz + keep * 0.5 * qz;
-    s.extent = size;
-    for (int l = 0; l < group_size; ++l) s.extent[l] = __builtin_sqrt(size[l]);
+    s.extent = square_root(size);
 
     const std::size_t rest = input.count - first;
     const int count = rest < group_size ? static_cast<int>(rest) : group_size;
+    if (input.value_count == 4) find_weights(view, x0, y0, s, weights);
     for (int l = 0; l < count; ++l) {
       const std::size_t n = first + static_cast<std::size_t>(l);
       output.keys[n] = keys[l];
       output.blocks[n] = write_planes(g, l, test, input.wanted, output.planes[n], output.refinements[n]);
       if (input.value_count == 4 && output.blocks[n] != 0) {
-        write_colors(view, input, x0, y0, g, s, l, output.colors[n], output.ranges[n]);
+        output.planes[n].depth = weights.depth[l];
+        output.planes[n].wild = write_colors(input, g, weights, l, output.colors[n], output.ranges[n]);
       }
     }
     if (input.value_count == 1) write_scalars(view, input, x0, y0, g, s, count, output.scalars + first);
