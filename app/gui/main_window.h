@@ -108,6 +108,7 @@ class MainWindow : public QMainWindow {
   QAction* full_screen_ = nullptr;
   std::vector<QAction*> needing_document_;
   std::vector<QDockWidget*> docks_;
+  QDockWidget* rendering_dock_ = nullptr;
   QMenu* docks_menu_ = nullptr;
   QMenu* recent_menu_ = nullptr;
   QLabel* counts_ = nullptr;

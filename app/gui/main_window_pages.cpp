@@ -8,10 +8,13 @@
 #include "app/gui/display_options.h"
 #include "app/gui/drop_target.h"
 #include "app/gui/help_window.h"
+#include "app/gui/log_panel.h"
 #include "app/gui/main_window.h"
 #include "app/gui/material_panel.h"
 #include "app/gui/opening.h"
+#include "app/gui/pick_panel.h"
 #include "app/gui/rendering_parameters.h"
+#include "app/gui/timing_panel.h"
 #include "app/gui/viewport.h"
 
 namespace atomesh::gui {
@@ -51,13 +54,19 @@ void MainWindow::build_docks() {
   build_bottom_docks();
   // Until the user's own layout is known: columns of text on either side, the rest for the view.
   const int em = fontMetrics().averageCharWidth();
-  resizeDocks({docks_.front(), docks_[2]}, {44 * em, 58 * em}, Qt::Horizontal);
+  resizeDocks({docks_.front(), rendering_dock_}, {44 * em, 58 * em}, Qt::Horizontal);
 }
 
 void MainWindow::build_left_docks() {
   add_dock(new MaterialPanel(workspace_), tr("Material"), Qt::LeftDockWidgetArea);
   defects_ = new DefectDock(workspace_, this);
-  add_dock(defects_, tr("Crystal defects"), Qt::LeftDockWidgetArea);
+  QDockWidget* defects_dock = add_dock(defects_, tr("Crystal defects"), Qt::LeftDockWidgetArea);
+  QDockWidget* pick_dock = add_dock(new PickPanel(workspace_, this), tr("Pick"), Qt::LeftDockWidgetArea);
+  tabifyDockWidget(defects_dock, pick_dock);
+  defects_dock->raise();
+  connect(&workspace_, &Workspace::picks_changed, pick_dock, [this, pick_dock] {
+    if (!workspace_.picks().empty()) pick_dock->raise();
+  });
 }
 
 void MainWindow::build_right_docks() {
@@ -68,7 +77,7 @@ void MainWindow::build_right_docks() {
   connect(display, &DisplayOptions::help_requested, this, &MainWindow::show_help);
 
   rendering_ = new RenderingParameters(workspace_, this);
-  QDockWidget* rendering_dock = add_dock(rendering_, tr("Rendering parameters"), Qt::RightDockWidgetArea);
+  rendering_dock_ = add_dock(rendering_, tr("Rendering parameters"), Qt::RightDockWidgetArea);
   connect(rendering_, &RenderingParameters::help_requested, this, &MainWindow::show_help);
 
   color_map_ = new ColorMapEditor(workspace_, this);
@@ -79,12 +88,22 @@ void MainWindow::build_right_docks() {
   });
   connect(rendering_, &RenderingParameters::create_histogram_requested, color_map_,
           &ColorMapEditor::ask_where_to_write_histogram);
-  tabifyDockWidget(display_dock, rendering_dock);
-  tabifyDockWidget(rendering_dock, map_dock);
-  rendering_dock->raise();
+  tabifyDockWidget(display_dock, rendering_dock_);
+  tabifyDockWidget(rendering_dock_, map_dock);
+  rendering_dock_->raise();
 }
 
-void MainWindow::build_bottom_docks() {}
+void MainWindow::build_bottom_docks() {
+  QDockWidget* log = add_dock(new LogPanel(workspace_, this), tr("Log"), Qt::BottomDockWidgetArea);
+  auto* timing = new TimingPanel(workspace_, this);
+  connect(viewport_, &Viewport::frame_shown, timing, &TimingPanel::note_picture);
+  QDockWidget* timing_dock = add_dock(timing, tr("Timing"), Qt::BottomDockWidgetArea);
+  tabifyDockWidget(log, timing_dock);
+  log->raise();
+  // The view comes first; the status line says the last of it.
+  log->hide();
+  timing_dock->hide();
+}
 
 void MainWindow::show_help(const QString& topic) {
   if (help_ == nullptr) help_ = new HelpWindow(this);
