@@ -167,6 +167,7 @@ class MappedSamplesIntegrator : public MappedCells {
     const Intervals range = s.range;
     const float step = 1.0F / static_cast<float>(optics_.samples);
     const Lanes step_length = s.length * Lanes(step);
+    Light gathered;
     for (int i = 0; i < optics_.samples; ++i) {
       const Lanes here = multiply_add(Lanes((static_cast<float>(2 * i + 1) * step) - 1.0F), s.half, s.middle);
       Rgba color = color_at(interval(range.first), here - Lanes(begin_of(interval(range.first), cell)));
@@ -176,8 +177,9 @@ class MappedSamplesIntegrator : public MappedCells {
         const Rgba other = color_at(interval(n), here - begin);
         for (int k = 0; k < 4; ++k) color.channel[k] = select(below, color.channel[k], other.channel[k]);
       }
-      absorb(color, opacity_of(max(color.channel[3], Lanes(0.0F)) * step_length), light);
+      absorb(color, opacity_of(max(color.channel[3], Lanes(0.0F)) * step_length), gathered);
     }
+    add_gathered(gathered, light);
     return light;
   }
 };

@@ -109,6 +109,15 @@ static inline Lanes opacity_of(const Lanes& x) {
   return select(x > Lanes(optics::thin_limit), Lanes(1.0F) - exp_minus(x), thin);
 }
 
+// Lays what was gathered apart, from nothing, behind what is in `light`. Of many small terms that are added one by one
+// each loses what a float loses of the whole.
+static inline void add_gathered(const Light& gathered, Light& light) {
+  light.red = multiply_add(light.through, gathered.red, light.red);
+  light.green = multiply_add(light.through, gathered.green, light.green);
+  light.blue = multiply_add(light.through, gathered.blue, light.blue);
+  take(light.through * gathered.covered, light);
+}
+
 // Samples in the middle of equal steps, each of its own colour and opacity.
 class Samples {
  public:
@@ -122,10 +131,12 @@ class Samples {
   __attribute__((noinline, flatten)) Light add_all(Rgba near_end, Rgba far_end, Lanes length, Light light) const {
     const float step = 1.0F / static_cast<float>(count_);
     const Lanes step_length = length * Lanes(step);
+    Light gathered;
     for (int i = 0; i < count_; ++i) {
       const Rgba color = mix(near_end, far_end, Lanes((static_cast<float>(i) + 0.5F) * step));
-      absorb(color, opacity_of(color.channel[3] * step_length), light);
+      absorb(color, opacity_of(color.channel[3] * step_length), gathered);
     }
+    add_gathered(gathered, light);
     return light;
   }
 

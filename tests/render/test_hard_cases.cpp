@@ -33,8 +33,15 @@ static_assert(fast_beside > cell_projection::ray_shift);
 // The judge's pass by an infinitely small way, but the known answer is computed in double.
 constexpr double judge_beside = 0x1p-30;
 
-constexpr std::array<Integrator, 4> integrators{Integrator::exact, Integrator::linear, Integrator::preintegrated,
-                                                Integrator::sampled};
+struct Setting {
+  Integrator integrator;
+  int samples;  // per cell, of Integrator::sampled
+};
+constexpr std::array<Setting, 5> settings{{{Integrator::exact, 4},
+                                           {Integrator::linear, 4},
+                                           {Integrator::preintegrated, 4},
+                                           {Integrator::sampled, 4},
+                                           {Integrator::sampled, 16}}};
 
 std::vector<std::string> kernels() {
   std::vector<std::string> names;
@@ -115,14 +122,16 @@ TEST_P(HardCases, OpticalDepthIsTheLengthInside) {
       const Scene scene = make_scene(hard().material, constant_density(mode, 1.0));
       for (const double extinction : hard().extinctions) {
         Parameters parameters = constant_density(mode, extinction);
-        for (const Integrator integrator : integrators) {
-          parameters.integrator = integrator;
+        for (const Setting& setting : settings) {
+          parameters.integrator = setting.integrator;
+          parameters.samples_per_cell = setting.samples;
           for (const std::string& kernel : kernels()) {
             cell_projection::set_kernel(kernel);
             const Image image = draw("cpu", scene, view.camera, parameters).image;
             expect_length(known.of_optical_depth(extinction, image), limit,
                           hard().name + ", " + view.name + ", " + std::string(mode_name(mode)) + ", integrator " +
-                              std::to_string(static_cast<int>(integrator)) + ", " + kernel + ", extinction " +
+                              std::to_string(static_cast<int>(setting.integrator)) + " of " +
+                              std::to_string(setting.samples) + " samples, " + kernel + ", extinction " +
                               std::to_string(extinction));
           }
           cell_projection::set_kernel("");
