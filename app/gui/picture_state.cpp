@@ -28,9 +28,19 @@ std::string line_value(std::string_view text, std::string_view key) {
   return "";
 }
 
+// Without the one that says how the file was written.
+std::string what_was_made(std::string_view provenance) {
+  std::string lines;
+  LineReader reader(provenance);
+  for (std::string_view line; reader.next(line);) {
+    if (!line.starts_with("compress=")) lines.append(line).append("\n");
+  }
+  return lines;
+}
+
 // Without the input's hash two files of one name could be anything.
 bool same_origin(const std::string& a, const std::string& b) {
-  return a == b && !line_value(a, "input_hash").empty();
+  return !line_value(a, "input_hash").empty() && what_was_made(a) == what_was_made(b);
 }
 
 std::vector<std::string> candidates(const cli::PictureOrigin& origin, const std::string& png) {
@@ -39,7 +49,13 @@ std::vector<std::string> candidates(const cli::PictureOrigin& origin, const std:
   const std::string input = line_value(origin.provenance, "input");
   std::vector<fs::path> paths;
   if (!origin.data.empty()) paths = {said, beside / said.filename()};
-  if (!input.empty()) paths.insert(paths.end(), {said.parent_path() / input, beside / input});
+  for (const fs::path& folder : {said.parent_path(), beside}) {
+    if (input.empty()) break;
+    const fs::path atoms = folder / input;
+    // What preprocessing made of the atoms, where the picture is of these themselves.
+    for (const char* made : {".crb", ".crt"}) paths.push_back(fs::path(atoms).replace_extension(made));
+    paths.push_back(atoms);
+  }
   std::vector<std::string> unique;
   for (const fs::path& path : paths) {
     if (std::find(unique.begin(), unique.end(), path.string()) == unique.end()) unique.push_back(path.string());
@@ -50,14 +66,18 @@ std::vector<std::string> candidates(const cli::PictureOrigin& origin, const std:
 // What the file at `path` is to the picture; Match::other for whatever cannot be read.
 Match match(const cli::PictureOrigin& origin, const std::string& path, Progress& progress) {
   try {
-    if (!origin.data_hash.empty() && cli::hash_of_data(path, progress) == origin.data_hash) return Match::same;
+    const auto same_file = [&] {
+      return !origin.data_hash.empty() && cli::hash_of_data(path, progress) == origin.data_hash;
+    };
     if (is_material_file(path)) {
+      if (same_file()) return Match::same;
       const Material head = read_material(
           path, {.atoms = false, .tetrahedra = false, .surface = false, .defects = false, .fields = false}, progress);
       return same_origin(cli::provenance_lines(head.provenance), origin.provenance) ? Match::remade : Match::other;
     }
     const std::string input_hash = line_value(origin.provenance, "input_hash");
-    return !input_hash.empty() && cli::hash_of_data(path, progress) == input_hash ? Match::atoms : Match::other;
+    if (input_hash.empty()) return same_file() ? Match::same : Match::other;  // a mesh
+    return cli::hash_of_data(path, progress) == input_hash ? Match::atoms : Match::other;
   } catch (const InputError&) {
     return Match::other;
   }

@@ -29,8 +29,8 @@ struct PictureState {
   std::vector<std::string> searched;  // absolute paths, in the order they were looked at
 };
 
-// Looks where the PNG says, beside the PNG, and for the atoms file in both folders. Throws InputError for a PNG without
-// parameters (see read_picture_origin()), CancelledError.
+// Looks where the PNG says, beside the PNG, and in both folders for the atoms file and a material of its name. Throws
+// InputError for a PNG without parameters (see read_picture_origin()), CancelledError.
 PictureState read_picture_state(const std::string& png, Progress& progress = no_progress());
 
 // What to say where `data` is nothing or Match::other: which file is wanted, where it was looked for.

@@ -253,6 +253,35 @@ TEST_F(Guide, SavingPicturesAndMovies) {
   EXPECT_GT(fs::file_size(crystals->file("turn.ogv")), 1000U);
 }
 
+// As the guide says: a saved picture brings back its view, also in a window where nothing is open.
+TEST_F(Guide, ASavedPictureBringsBackItsView) {
+  open();
+  set("mode", "surface");
+  set("view.azimuth", "77.25");
+  set("surface.color", "#123456");
+  const Parameters parameters = window->workspace().parameters();
+  child<QAction>(*window, "action_save_picture").trigger();
+  auto& dialog = child<SavePictureDialog>(*window, "save_picture");
+  dialog.form().set_size(120, 90);
+  const QString png = QString::fromStdString(crystals->file("view.png"));
+  dialog.set_path(png);
+  bool saved = false;
+  QObject::connect(&dialog, &OutputDialog::saved, [&] { saved = true; });
+  dialog.save();
+  ASSERT_TRUE(wait_for([&] { return saved; }));
+  // Over what is open: one change that can be undone.
+  set("view.azimuth", "10");
+  window->open(png);
+  ASSERT_TRUE(wait_for([&] { return window->workspace().parameters() == parameters; }));
+  window->workspace().undo();
+  EXPECT_EQ(window->workspace().parameters().azimuth, 10.0);
+  window = std::make_unique<MainWindow>();
+  test::show(*window);
+  window->open(png);
+  ASSERT_TRUE(wait_for([&] { return window->workspace().document().has_value(); }));
+  EXPECT_EQ(window->workspace().parameters(), parameters);
+}
+
 TEST_F(Guide, Help) {
   HelpWindow help;
   help.resize(820, 560);

@@ -145,6 +145,19 @@ TEST_F(PictureStateTest, PlacesAreSeenFromThePicture) {
   EXPECT_EQ(read_picture_state(path("b/1/2/3/p.png")).data->match, Match::same);
 }
 
+TEST_F(PictureStateTest, APictureOfAtomsOpensWhatWasMadeOfThem) {
+  const TemporaryFolder folder;
+  fs::copy_file(path("d.dat"), folder.file("d.dat"));
+  cli({"render", folder.file("d.dat"), "-o", folder.file("p.png"), "--size", "8x6"});
+  EXPECT_EQ(read_picture_state(folder.file("p.png")).data->match, Match::atoms);
+  cli({"preprocess", folder.file("d.dat"), "-o", folder.file("d.crb")});
+  const PictureState state = read_picture_state(folder.file("p.png"));
+  EXPECT_EQ(state.data->match, Match::remade);
+  EXPECT_EQ(state.data->path, folder.file("d.crb"));
+  cli({"preprocess", folder.file("d.dat"), "-o", folder.file("d.crb"), "--carve", "off"});
+  EXPECT_EQ(read_picture_state(folder.file("p.png")).data->match, Match::atoms);
+}
+
 TEST_F(PictureStateTest, DataDamagedSinceAreNotTaken) {
   const TemporaryFolder folder;
   fs::copy_file(path("d.crb"), folder.file("d.crb"));
