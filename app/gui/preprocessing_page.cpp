@@ -21,6 +21,8 @@ namespace atomesh::gui {
 
 namespace {
 
+constexpr Qt::ItemFlags row_has_begun = Qt::ItemIsEnabled | Qt::ItemIsSelectable;
+
 enum Column { stage_column, time_column, memory_column, result_column, column_count };
 
 QString text(const std::string& utf8) {
@@ -172,7 +174,7 @@ void PreprocessingPage::show_plan() {
       auto* item = new QTableWidgetItem(column == stage_column ? stage_title(name) : QString());
       item->setData(Qt::UserRole, text(name));
       if (column == time_column || column == memory_column) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
-      item->setForeground(palette().color(QPalette::Disabled, QPalette::Text));
+      item->setFlags(Qt::NoItemFlags);  // gray, in whatever theme
       stages_->setItem(row, column, item);
     }
   }
@@ -191,8 +193,8 @@ void PreprocessingPage::mark_running(const QString& name) {
   for (int row = next_row_; row < stages_->rowCount(); ++row) {
     if (stages_->item(row, stage_column)->data(Qt::UserRole).toString() != stage) continue;
     leave_out(next_row_, row);
-    stages_->item(next_row_, stage_column)->setForeground(palette().color(QPalette::Text));
-    stages_->item(next_row_, result_column)->setForeground(palette().color(QPalette::Text));
+    stages_->item(next_row_, stage_column)->setFlags(row_has_begun);
+    stages_->item(next_row_, result_column)->setFlags(row_has_begun);
     stages_->item(next_row_, result_column)->setText(tr("…"));
     stages_->scrollToItem(stages_->item(next_row_, stage_column));
     break;
@@ -228,7 +230,7 @@ void PreprocessingPage::show_row(const StageRow& row) {
   stages_->item(place, result_column)->setText(text(row.outcome));
   stages_->item(place, result_column)->setToolTip(text(row.outcome));
   for (int column = 0; column < column_count; ++column) {
-    stages_->item(place, column)->setForeground(palette().color(QPalette::Text));
+    stages_->item(place, column)->setFlags(row_has_begun);
   }
   for (const int column : {stage_column, time_column, memory_column}) stages_->resizeColumnToContents(column);
   ++next_row_;

@@ -1,6 +1,7 @@
 #include "app/gui/run_window.h"
 
 #include <QApplication>
+#include <QIcon>
 #include <QSurfaceFormat>
 #include <cstdlib>
 #include <optional>
@@ -43,6 +44,7 @@ int run_window(const WindowArguments& arguments) {
     QApplication::setApplicationName("atomesh");
     QApplication::setOrganizationName("atomesh");
     QApplication::setDesktopFileName("atomesh");
+    QApplication::setWindowIcon(QIcon(":/desktop/atomesh.svg"));
     if (const std::string reason = missing_opengl(); !reason.empty()) throw UnavailableError(without_window(reason));
     guard.reset();
     const ThemeKeeper theme;

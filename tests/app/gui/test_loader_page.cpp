@@ -149,6 +149,8 @@ TEST_F(Pages, SettingsOfPreprocessingAreThoseOfTheCommandLine) {
   EXPECT_EQ(loader.request().settings.options.carve_options.radius, 2.6);
   EXPECT_EQ(loader.request().settings.options.tetrahedralize.mesher, "delaunay");
   test::keep_screenshot(loader.grab().toImage(), "loader-settings");
+  loader.setPalette(test::dark_palette());
+  test::keep_screenshot(loader.grab().toImage(), "loader-settings-dark");
   child<QComboBox>(loader, "setting_carve").setEditText("wide");
   EXPECT_FALSE(child<QPushButton>(loader, "go").isEnabled());
   EXPECT_TRUE(child<QLabel>(loader, "settings_message").text().contains("--carve"));
@@ -204,6 +206,8 @@ TEST_F(Pages, PreprocessingShowsItsStagesAndGoesOn) {
   EXPECT_TRUE(child<QLabel>(page, "preprocessing_status").text().contains("salt.crb"));
   EXPECT_TRUE(child<QPlainTextEdit>(page, "preprocessing_log").toPlainText().contains("carve 2.6"));
   test::keep_screenshot(page.grab().toImage(), "preprocessing-done");
+  page.setPalette(test::dark_palette());
+  test::keep_screenshot(page.grab().toImage(), "preprocessing-done-dark");
   EXPECT_EQ(on.size(), 0);
   EXPECT_FALSE(child<QPushButton>(page, "preprocessing_cancel").isVisible());
   QTest::mouseClick(&child<QPushButton>(page, "back"), Qt::LeftButton);
