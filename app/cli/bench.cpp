@@ -7,6 +7,7 @@
 #include "app/cli/bench_preprocess.h"
 #include "app/cli/bench_render.h"
 #include "app/cli/bench_seed_table.h"
+#include "app/cli/bench_window.h"
 #include "app/cli/commands.h"
 #include "app/cli/output_file.h"
 #include "app/cli/report_html.h"
@@ -33,7 +34,7 @@ struct BenchArguments {
 };
 
 const std::vector<std::string>& suite_names() {
-  static const std::vector<std::string> names{"seed-table", "preprocess", "render", "error"};
+  static const std::vector<std::string> names{"seed-table", "preprocess", "render", "error", "window"};
   return names;
 }
 
@@ -80,6 +81,11 @@ int run_bench(const BenchArguments& arguments, Session& session) {
     options.full = arguments.full;
     if (arguments.repeats > 0) options.repeats = arguments.repeats;
     (arguments.suite == "render" ? bench_render : bench_error)(options, session, result);
+  } else if (arguments.suite == "window") {
+    WindowBenchOptions options;
+    options.quick = arguments.render.quick;
+    if (arguments.repeats > 0) options.repeats = arguments.repeats;
+    bench_window(options, session, result);
   } else {
     SeedTableOptions options = arguments.seed_table;
     options.atoms = arguments.atoms;
@@ -106,7 +112,8 @@ Command add_bench(CLI::App& app) {
                  "seed-table: preprocessing and the five modes on the ten samples, beside the seed's table 5.1; "
                  "preprocess: speed, memory and truth of preprocessing, beside CGAL, TetGen, VTK and LAMMPS; "
                  "render: speed, errors and memory of pictures, beside VTK's volume mappers and the seed; "
-                 "error: speed against error of every integrator, errors of all data sets and modes, hard cases")
+                 "error: speed against error of every integrator, errors of all data sets and modes, hard cases; "
+                 "window: how soon the window shows its first picture")
       ->required();
   app.add_option("--sample", seed_table.samples, "seed-table: only these samples; see atomesh sample --list")
       ->type_name("NAME…");
@@ -126,7 +133,7 @@ Command add_bench(CLI::App& app) {
       ->type_name("FOLDER");
   app.add_flag("!--no-peers", render.peers, "render, error: without VTK's mappers");
   app.add_flag("!--no-z-sweep", render.z_sweep, "render: without the slowest of VTK's mappers");
-  app.add_flag("--quick", render.quick, "render, error: tiny data sets and pictures, to see that it works");
+  app.add_flag("--quick", render.quick, "render, error, window: tiny data sets and pictures, to see that it works");
   app.add_option_function<std::string>(
          "--atoms", [arguments](const std::string& text) { arguments->atoms = parse_count("--atoms", text); },
          "Atoms of each sample; 0: as many as the seed had, or as the part is defined for [0]")
@@ -139,7 +146,8 @@ Command add_bench(CLI::App& app) {
          },
          "seed-table: pixels of the pictures [512x512]; render, error: of all [each part's own]")
       ->type_name("WxH");
-  app.add_option("--repeats", arguments->repeats, "Measured runs of each [seed-table, render, error: 3, preprocess: 1]")
+  app.add_option("--repeats", arguments->repeats,
+                 "Measured runs of each [seed-table, render, error: 3, preprocess: 1, window: 5]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app.add_option("--markdown", arguments->markdown, "Also write the tables as Markdown")->type_name("FILE.md");

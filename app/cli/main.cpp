@@ -92,7 +92,7 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 // Words that are no subcommand are files for the window.
-int show_window(const std::vector<std::string>& files, const std::string& parameters) {
+int show_window(const std::vector<std::string>& files, const std::string& parameters, bool until_shown) {
   for (const std::string& file : files) {
     if (std::filesystem::is_directory(file)) return fail(file + " is a folder; name a file of it", exit_usage);
     if (!std::filesystem::exists(file)) return fail(about_unknown_word(file) + "\nTry: atomesh --help", exit_usage);
@@ -103,7 +103,7 @@ int show_window(const std::vector<std::string>& files, const std::string& parame
   // The window's own work is cancelled by closing it; Ctrl-C just ends the program.
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
-  return gui::run_window({files, parameters});
+  return gui::run_window({files, parameters, until_shown});
 }
 
 int run(int argc, char** argv) {
@@ -122,6 +122,9 @@ int run(int argc, char** argv) {
                  "back); a .crf beside it gives the view")
       ->type_name("");
   app.add_option("--params", parameters, "View parameters for the window")->type_name("F.crf");
+  bool until_shown = false;
+  app.add_flag("--until-shown", until_shown,
+               "Close the window when the picture is complete, and print how long that took");
   app.footer(
       "Example:\n"
       "  atomesh nacl.crb\n"
@@ -156,7 +159,7 @@ int run(int argc, char** argv) {
     session.finish();
     return exit_code;
   }
-  return show_window(files, parameters);
+  return show_window(files, parameters, until_shown);
 }
 
 }  // namespace

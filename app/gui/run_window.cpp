@@ -1,15 +1,24 @@
 #include "app/gui/run_window.h"
 
+#include <unistd.h>
+
 #include <QApplication>
 #include <QIcon>
 #include <QSurfaceFormat>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <memory>
 #include <optional>
+#include <sstream>
 
 #include "app/gui/file_summary.h"
 #include "app/gui/main_window.h"
 #include "app/gui/startup.h"
 #include "app/gui/theme.h"
+#include "app/gui/viewport.h"
 #include "core/error.h"
 
 namespace atomesh::gui {
@@ -23,12 +32,42 @@ void set_surface_format() {
   QSurfaceFormat::setDefaultFormat(format);
 }
 
+namespace {
+
+// Since this process was started, libraries included; the system counts in hundredths of a second.
+double ms_of_this_process() {
+  std::ifstream status("/proc/self/stat");
+  std::string text((std::istreambuf_iterator<char>(status)), {});
+  // The 22nd field; the second is a name in parentheses that may have blanks.
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::string field;
+  for (int i = 3; i <= 22; ++i) fields >> field;
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  const double started = std::strtod(field.c_str(), nullptr) * 1e3 / static_cast<double>(sysconf(_SC_CLK_TCK));
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec) - started;
+}
+
+void close_when_shown(MainWindow& window) {
+  const auto first = std::make_shared<double>(-1.0);
+  QObject::connect(&window.viewport(), &Viewport::frame_shown, &window, [first] {
+    if (*first < 0.0) *first = ms_of_this_process();
+  });
+  QObject::connect(&window.viewport(), &Viewport::became_settled, &window, [first, &window] {
+    std::printf("first picture after %.0f ms, complete after %.0f ms\n", *first, ms_of_this_process());
+    window.close();
+  });
+}
+
+}  // namespace
+
 int run_window(const WindowArguments& arguments) {
   QStringList files;
   for (const std::string& file : arguments.files) files << QString::fromStdString(file);
   if (!arguments.parameters.empty()) files << QString::fromStdString(arguments.parameters);
   const FileChoice choice = choose_files(files);
   if (!choice.problem.isEmpty()) throw UsageError(choice.problem.toStdString());
+  if (arguments.until_shown && choice.data.isEmpty()) throw UsageError("--until-shown: expected FILE to show");
   if (const std::string reason = missing_display(std::getenv); !reason.empty()) {
     throw UnavailableError(without_window(reason));
   }
@@ -49,6 +88,7 @@ int run_window(const WindowArguments& arguments) {
     guard.reset();
     const ThemeKeeper theme;
     MainWindow window;
+    if (arguments.until_shown) close_when_shown(window);
     window.start(choice.data, choice.parameters);
     window.show();
     exit_code = QApplication::exec();

@@ -9,6 +9,9 @@ namespace atomesh::gui {
 struct WindowArguments {
   std::vector<std::string> files;  // at most one data file, at most one .crf
   std::string parameters;          // a .crf, or ""
+  // Closes once the picture is complete, after printing how long the program took to the first picture and to that one,
+  // from the start of its process: "first picture after 310 ms, complete after 450 ms". Needs a file.
+  bool until_shown = false;
 };
 
 // Opens the window and returns its exit code when it is closed. Throws UnavailableError, naming the headless

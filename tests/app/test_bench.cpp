@@ -138,6 +138,18 @@ TEST_F(Bench, UnitCellsOfCommonStructuresAreFound) {
   EXPECT_EQ(structures, 36U);  // twelve, each perfect and shaken twice
 }
 
+TEST_F(Bench, WindowsAreTimedUntilTheirPictureIsThere) {
+  const Outcome outcome = place.run({"bench", "window", "--quick", "--repeats", "1", "--json", "w.json"});
+  if (outcome.exit_code == 3 && outcome.err.find("display") != std::string::npos) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json result = json::parse(place.read("w.json"));
+  ASSERT_EQ(result["rows"].size(), 2U);
+  for (const json& row : result["rows"]) {
+    EXPECT_GT(row["ms_median"], 10.0);
+    EXPECT_GE(row["complete_ms"], row["ms_median"]);
+  }
+}
+
 TEST_F(Bench, UnknownPartsAreRefusedWithTheNearest) {
   const Outcome outcome = place.run({"bench", "preprocess", "--part", "tetrahedralise"});
   EXPECT_EQ(outcome.exit_code, 1);
