@@ -238,7 +238,8 @@ void ColorMapEditor::build_layout() {
 
 void ColorMapEditor::follow() {
   connect(canvas_, &ColorMapCanvas::edited, this, &ColorMapEditor::change);
-  connect(canvas_, &ColorMapCanvas::gesture_ended, this, [this] { workspace_.end_gesture(); });
+  // To the workspace itself: the canvas loses the focus while this is taken down.
+  connect(canvas_, &ColorMapCanvas::gesture_ended, &workspace_, &Workspace::end_gesture);
   connect(canvas_, &ColorMapCanvas::color_wanted, this, &ColorMapEditor::ask_color);
   connect(canvas_, &ColorMapCanvas::refused, this, &ColorMapEditor::show_refusal);
   connect(canvas_, &ColorMapCanvas::selection_changed, this, [this] {
