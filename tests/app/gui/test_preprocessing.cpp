@@ -292,7 +292,8 @@ TEST_F(PreprocessingRun, AnswersACancelWithin200Milliseconds) {
     EXPECT_LT(static_cast<double>(watch.elapsed()), 200.0 * slowdown);
   }
   std::printf("the longest answer to a cancel: %.0f ms, in %s\n", worst, where.c_str());
-  EXPECT_TRUE(wait_until([] { return !Job::any_left(); }));  // TetGen's own run
+  // TetGen's own run, which stands back behind whatever else the machine does.
+  EXPECT_TRUE(wait_until([] { return !Job::any_left(); }, 600'000));
   EXPECT_EQ(files(), (Names{"d.crb", "d.dat"}));
 }
 
