@@ -19,8 +19,8 @@ class RecentFiles : public QObject {
  public:
   static constexpr int most = 12;
 
-  // `what` is the name under which they are kept: "data", "parameter_files". `settings_file`: an .ini in the place of the
-  // program's own settings.
+  // `what` is the name under which they are kept: "data", "parameter_files". `settings_file`: an .ini in the place of
+  // the program's own settings.
   explicit RecentFiles(const QString& what, const QString& settings_file = {}, QObject* parent = nullptr);
   ~RecentFiles() override;
 

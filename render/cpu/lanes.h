@@ -5,8 +5,8 @@
 #pragma once
 
 #include <cstdint>
-#include <type_traits>
 #include <cstring>
+#include <type_traits>
 
 #if defined(__SSE2__)
 #include <immintrin.h>

@@ -77,7 +77,8 @@ TEST(Workspace, EveryRowIsChangedUndoneAndRedone) {
     SCOPED_TRACE(key);
     const std::string before = get_parameter(workspace.parameters(), key);
     std::string after = before;
-    while (after == before) after = get_parameter(test::random_parameters(++seed, workspace.document()->species()), key);
+    while (after == before)
+      after = get_parameter(test::random_parameters(++seed, workspace.document()->species()), key);
     workspace.set(key, after);
     EXPECT_EQ(get_parameter(workspace.parameters(), key), after);
     EXPECT_EQ(get_parameter(workspace.shown(), key), after);
