@@ -26,8 +26,7 @@ FileKind file_kind(const std::string& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".png") return FileKind::picture;
   // What it says it is and is not, its reader explains best.
-  if (extension == ".crb" || extension == ".crt") return FileKind::material;
-  if (is_material_file(path)) return FileKind::material;
+  if (is_material_file(path) || extension == ".crb" || extension == ".crt") return FileKind::material;
   return cli::is_mesh_file(path) ? FileKind::mesh : FileKind::atoms;
 }
 

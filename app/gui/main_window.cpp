@@ -185,7 +185,7 @@ void MainWindow::change_view(const QString& name, const std::function<void(Param
 void MainWindow::closeEvent(QCloseEvent* event) {
   QSettings settings;
   settings.setValue("window/geometry", saveGeometry());
-  settings.setValue("window/state", saveState());
+  settings.setValue("window/state", docks_shown_ ? saveState() : view_state_);
   store(workspace_.view_options());
   QMainWindow::closeEvent(event);
 }

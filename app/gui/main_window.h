@@ -86,6 +86,7 @@ class MainWindow : public QMainWindow {
   void change_view(const QString& name, const std::function<void(Parameters&)>& change);
   void fill_recent_menu();
   void show_help(const QString& topic);
+  void show_docks(bool on);
 
   Workspace workspace_;
   QStackedWidget* pages_ = nullptr;
@@ -109,6 +110,8 @@ class MainWindow : public QMainWindow {
   std::vector<QAction*> needing_document_;
   std::vector<QDockWidget*> docks_;
   QDockWidget* rendering_dock_ = nullptr;
+  bool docks_shown_ = true;
+  QByteArray view_state_;  // of docks and toolbars, while they are hidden
   QMenu* docks_menu_ = nullptr;
   QMenu* recent_menu_ = nullptr;
   QLabel* counts_ = nullptr;

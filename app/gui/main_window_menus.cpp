@@ -12,6 +12,7 @@
 #include "app/gui/main_window.h"
 #include "app/gui/navigation.h"
 #include "app/gui/parameter_files.h"
+#include "app/gui/rendering_parameters.h"
 #include "app/gui/theme.h"
 #include "app/gui/viewport.h"
 #include "core/camera.h"
@@ -80,6 +81,15 @@ void MainWindow::build_edit_menu() {
   redo_ = menu->addAction(tr("&Redo"), this, [this] { workspace_.redo(); });
   redo_->setObjectName("action_redo");
   redo_->setShortcuts({QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
+  menu->addSeparator();
+  QAction* find = menu->addAction(tr("&Find parameter…"), this, [this] {
+    rendering_dock_->show();
+    rendering_dock_->raise();
+    rendering_->start_search();
+  });
+  find->setObjectName("action_find_parameter");
+  find->setShortcut(QKeySequence::Find);
+  needing_document_.push_back(find);
   menu->addSeparator();
   add_copy_action(*menu);
 }

@@ -26,6 +26,7 @@ void MainWindow::build_pages() {
   pages_->addWidget(viewport_);
   setCentralWidget(pages_);
   opening_ = new Opening(workspace_, *pages_, *viewport_);
+  connect(pages_, &QStackedWidget::currentChanged, this, [this] { show_docks(pages_->currentWidget() == viewport_); });
   connect(opening_, &Opening::job_started, this, &MainWindow::follow);
   connect(opening_, &Opening::activity_changed, this, &MainWindow::update_title);
   connect(opening_, &Opening::exit_wanted, this, &QWidget::close);
@@ -103,6 +104,19 @@ void MainWindow::build_bottom_docks() {
   // The view comes first; the status line says the last of it.
   log->hide();
   timing_dock->hide();
+}
+
+// Loader and preprocessing have the window to themselves; the view gets back the docks that it had.
+void MainWindow::show_docks(bool on) {
+  if (on == docks_shown_) return;
+  docks_shown_ = on;
+  if (on) {
+    restoreState(view_state_);
+  } else {
+    view_state_ = saveState();
+    for (QDockWidget* dock : docks_) dock->hide();
+  }
+  for (QDockWidget* dock : docks_) dock->toggleViewAction()->setEnabled(on);
 }
 
 void MainWindow::show_help(const QString& topic) {

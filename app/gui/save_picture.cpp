@@ -66,6 +66,9 @@ Parameters picture_parameters(const Parameters& parameters, const PictureSetting
   return drawn;
 }
 
+// A cancel is heeded between passes, and their finishing takes its time.
+constexpr std::uint64_t prompt_pass_bytes = 128'000'000;
+
 PicturePlan plan_picture(const Parameters& parameters, const PictureSettings& settings) {
   check_size(settings);
   const Parameters drawn = picture_parameters(parameters, settings);
@@ -74,7 +77,7 @@ PicturePlan plan_picture(const Parameters& parameters, const PictureSettings& se
   Channels channels;
   if (settings.parts.legend && drawn.mode == Mode::xray) channels.thickness = &thickness;
   PicturePlan plan;
-  plan.rows = rows_within(default_pass_bytes(), camera, drawn, channels);
+  plan.rows = rows_within(std::min(default_pass_bytes(), prompt_pass_bytes), camera, drawn, channels);
   plan.passes = (camera.height + plan.rows - 1) / plan.rows;
   plan.bytes = pass_bytes(camera, drawn, channels, plan.rows);
   return plan;
