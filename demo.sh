@@ -51,4 +51,4 @@ head -n 12 "$out/$sample-defects.txt"
 echo
 printf '%s\n' "${steps[@]}"
 echo
-echo "The pictures and the table are in $PWD/$out"
+echo "The pictures and the table are in $PWD/$out. To look at the crystal yourself: $atomesh $out/$sample.crb"

@@ -170,6 +170,7 @@ QString DefectList::message() const {
 
 QString DefectList::summary() const {
   if (state_ != State::ready) return {};
+  if (clusters_->size() == 1 && rows_.size() == 1) return tr("1 cluster");
   if (rows_.size() == clusters_->size()) return tr("%L1 clusters").arg(rows_.size());
   return tr("%L1 of %L2 clusters").arg(rows_.size()).arg(clusters_->size());
 }
