@@ -23,7 +23,7 @@ std::atomic<int> left{0};
 
 // The scheduler then serves the window first, however many threads compute. What this thread starts inherits it.
 void stand_back() {
-  constexpr int niceness = 10;
+  constexpr int niceness = 5;
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness);
 }
 
