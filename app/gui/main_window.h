@@ -76,6 +76,7 @@ class MainWindow : public QMainWindow {
   void build_view_options(QMenu& menu);
   void build_window_menu();
   void build_help_menu();
+  void keep_menu_keys();
   void build_status_line();
   void follow_workspace();
   void update_title();

@@ -1,8 +1,10 @@
+#include <QAbstractButton>
 #include <QAction>
 #include <QActionGroup>
 #include <QApplication>
 #include <QDockWidget>
 #include <QFileDialog>
+#include <QLabel>
 #include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
@@ -27,6 +29,7 @@ void MainWindow::build_menus() {
   build_view_menu();
   build_window_menu();
   build_help_menu();
+  keep_menu_keys();
 }
 
 void MainWindow::build_file_menu() {
@@ -263,7 +266,44 @@ void MainWindow::build_window_menu() {
 }
 
 void MainWindow::build_help_menu() {
-  menuBar()->addMenu(tr("&Help"));
+  QMenu* menu = menuBar()->addMenu(tr("&Help"));
+  QAction* help = menu->addAction(tr("&Help"), this, [this] { show_help({}); });
+  help->setObjectName("action_help");
+  help->setShortcuts({QKeySequence(Qt::Key_H), QKeySequence(QKeySequence::HelpContents)});
+  QAction* controls = menu->addAction(tr("&Mouse and keys"), this, [this] { show_help("controls"); });
+  controls->setObjectName("action_help_controls");
+  menu->addSeparator();
+  QAction* about = menu->addAction(tr("&About atomesh"), this, [this] {
+    QMessageBox::about(
+        this, tr("About atomesh"),
+        tr("<b>%1</b><p>What is wrong inside a crystal, seen.<p>GPL-3.0 or later; with CGAL, TetGen, VTK, "
+           "Embree, spglib and Qt %2.")
+            .arg(QString::fromStdString(program_version()), QString::fromUtf8(qVersion())));
+  });
+  about->setObjectName("action_about");
+}
+
+// The menus' keys are theirs: what in a dock would answer to the same is found by Tab.
+void MainWindow::keep_menu_keys() {
+  QString taken;
+  for (const QAction* menu : menuBar()->actions()) {
+    const QKeySequence key = QKeySequence::mnemonic(menu->text());
+    if (!key.isEmpty()) taken += QChar(key[0].key());
+  }
+  const auto without = [&taken](const QString& text) {
+    const QKeySequence key = QKeySequence::mnemonic(text);
+    return !key.isEmpty() && taken.contains(QChar(key[0].key())) ? QString(text).remove(QChar('&')) : text;
+  };
+  for (const QDockWidget* dock : docks_) {
+    for (QAbstractButton* button : dock->findChildren<QAbstractButton*>()) {
+      if (const QString text = without(button->text()); text != button->text()) button->setText(text);
+    }
+    for (QLabel* label : dock->findChildren<QLabel*>()) {
+      if (const QString text = without(label->text()); label->buddy() != nullptr && text != label->text()) {
+        label->setText(text);
+      }
+    }
+  }
 }
 
 void MainWindow::reset_orientation() {

@@ -55,7 +55,7 @@ void MainWindow::build_docks() {
   build_bottom_docks();
   // Until the user's own layout is known: columns of text on either side, the rest for the view.
   const int em = fontMetrics().averageCharWidth();
-  resizeDocks({docks_.front(), rendering_dock_}, {44 * em, 58 * em}, Qt::Horizontal);
+  resizeDocks({docks_.front(), rendering_dock_}, {44 * em, 72 * em}, Qt::Horizontal);
 }
 
 void MainWindow::build_left_docks() {

@@ -1,13 +1,18 @@
 // The whole window as a user drives it: files, modes, keys, undo; its pictures beside those of the command line.
 #include <gtest/gtest.h>
 
+#include <QAbstractButton>
 #include <QAction>
 #include <QDockWidget>
 #include <QLabel>
+#include <QMenu>
+#include <QMenuBar>
 #include <QMessageBox>
 #include <QSignalSpy>
 #include <QTest>
+#include <set>
 
+#include "app/gui/help_window.h"
 #include "tests/app/gui/window_fixture.h"
 
 namespace {
@@ -65,6 +70,29 @@ TEST_F(Window, DocksLeaveRoomForTheView) {
   EXPECT_TRUE(wait_for([&] { return window->viewport().width() >= 500; })) << window->viewport().width();
 }
 
+TEST_F(Window, EveryMenuHasEntriesAndItsKeyForItself) {
+  std::set<int> keys;
+  for (const QAction* action : window->menuBar()->actions()) {
+    ASSERT_NE(action->menu(), nullptr);
+    EXPECT_FALSE(action->menu()->isEmpty()) << action->text().toStdString();
+    EXPECT_TRUE(keys.insert(QKeySequence::mnemonic(action->text())[0].key()).second) << action->text().toStdString();
+  }
+  EXPECT_EQ(keys.size(), 6U);
+  for (const QDockWidget* dock : window->findChildren<QDockWidget*>()) {
+    for (const QAbstractButton* button : dock->findChildren<QAbstractButton*>()) {
+      const QKeySequence key = QKeySequence::mnemonic(button->text());
+      EXPECT_TRUE(key.isEmpty() || !keys.contains(key[0].key())) << button->text().toStdString();
+    }
+  }
+  std::set<QString> shortcuts;
+  for (const QAction* action : window->findChildren<QAction*>()) {
+    if (action->shortcutContext() != Qt::WindowShortcut) continue;
+    for (const QKeySequence& key : action->shortcuts()) {
+      EXPECT_TRUE(shortcuts.insert(key.toString()).second) << key.toString().toStdString();
+    }
+  }
+}
+
 TEST_F(Window, KeysOfTheManual) {
   open_salt();
   Workspace& workspace = window->workspace();
@@ -86,6 +114,12 @@ TEST_F(Window, KeysOfTheManual) {
   EXPECT_TRUE(wait_for([&] { return window->isFullScreen(); }));
   press(Qt::Key_F);
   EXPECT_TRUE(wait_for([&] { return !window->isFullScreen(); }));
+  press(Qt::Key_H);
+  EXPECT_TRUE(wait_for([&] {
+    const auto* help = window->findChild<HelpWindow*>();
+    return help != nullptr && help->isVisible();
+  }));
+  window->findChild<HelpWindow*>()->close();
   press(Qt::Key_Z, Qt::ControlModifier);  // the orientation comes back
   EXPECT_EQ(workspace.parameters().azimuth, 77.0);
   press(Qt::Key_Q);
