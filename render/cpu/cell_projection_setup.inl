@@ -16,6 +16,7 @@ typedef double D4 __attribute__((vector_size(32)));
 // Column and row of each cell.
 typedef float Places __attribute__((vector_size(8 * group_size)));
 typedef std::int32_t PlaceBits __attribute__((vector_size(8 * group_size)));
+typedef std::uint32_t PlaceMasks __attribute__((vector_size(8 * group_size)));
 
 // In one instruction, where the compiler's own conversion of vectors goes through memory.
 #if defined(__AVX__)
@@ -348,7 +349,10 @@ class BoxFinder {
     const PlaceBits end = some ? last_pixel : PlaceBits{};
     const PlaceBits first_block = begin / block_side;
     const PlaceBits last_block = end / block_side;
-    const PlaceBits pixels = ((one << end << 1) - (one << begin));
+    // Without sign: a set of 32 pixels fills its word, and the difference wraps.
+    const PlaceMasks unit = PlaceMasks{} + 1U;
+    const PlaceMasks pixels = (unit << __builtin_convertvector(end, PlaceMasks) << 1U) -
+                              (unit << __builtin_convertvector(begin, PlaceMasks));
     const PlaceBits blocks = ((one << last_block << 1) - (one << first_block)) & some;
     __builtin_memcpy(g.pixels, &pixels, sizeof pixels);
     __builtin_memcpy(g.first_block, &first_block, sizeof first_block);
