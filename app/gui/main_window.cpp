@@ -3,18 +3,25 @@
 #include <fmt/format.h>
 
 #include <QCloseEvent>
+#include <QDockWidget>
 #include <QFileInfo>
 #include <QLabel>
 #include <QMessageBox>
 #include <QProgressBar>
 #include <QSettings>
+#include <QStackedWidget>
 #include <QStatusBar>
 #include <QToolButton>
 #include <utility>
 
+#include "app/gui/copy_picture.h"
+#include "app/gui/crystal_view_dialog.h"
+#include "app/gui/help_window.h"
 #include "app/gui/job.h"
+#include "app/gui/movie_dialog.h"
 #include "app/gui/opening.h"
 #include "app/gui/render_worker.h"
+#include "app/gui/save_picture_dialog.h"
 #include "app/gui/viewport.h"
 #include "core/error.h"
 
@@ -68,7 +75,17 @@ MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
   restoreState(settings.value("window/state").toByteArray());
 }
 
-MainWindow::~MainWindow() = default;
+// What the window shows looks at the workspace, which as a member would go before the window's children.
+MainWindow::~MainWindow() {
+  delete crystal_view_;
+  delete save_picture_;
+  delete movie_;
+  delete copier_;
+  delete help_;
+  delete opening_;
+  qDeleteAll(docks_);
+  delete pages_;
+}
 
 void MainWindow::build_status_line() {
   hint_ = new QLabel(this);

@@ -74,7 +74,7 @@ class WindowView : public ::testing::Test {
 // change where the marks are.
 TEST_F(WindowView, ClicksPickInEveryMode) {
   const QPoint middle = window->viewport().rect().center();
-  const QPoint beside = middle + QPoint(60, 30);
+  const QPoint beside = middle + QPoint(24, 8);
   for (const Mode mode : {Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms}) {
     show_mode(mode);
     workspace().clear_picks();
