@@ -183,7 +183,7 @@ TEST(Job, StandsBackBehindTheWindow) {
   job.start();
   ASSERT_TRUE(wait_until([&] { return listener.ended(); }));
   EXPECT_EQ(niceness(), of_window);
-  EXPECT_GE(least, std::min(of_window + 10, 19));
+  EXPECT_GE(least, std::min(of_window + 5, 19));
 }
 
 }  // namespace
