@@ -308,14 +308,7 @@ void MainWindow::keep_menu_keys() {
 
 void MainWindow::reset_orientation() {
   workspace_.reset_rotation_center();
-  change_view(tr("Reset orientation"), [](Parameters& parameters) {
-    const Parameters defaults;
-    parameters.azimuth = defaults.azimuth;
-    parameters.elevation = defaults.elevation;
-    parameters.roll = defaults.roll;
-    parameters.zoom = defaults.zoom;
-    parameters.pan = defaults.pan;
-  });
+  change_view(tr("Reset orientation"), [](Parameters& parameters) { gui::reset_orientation(parameters); });
 }
 
 void MainWindow::update_actions() {

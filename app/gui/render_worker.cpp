@@ -112,11 +112,6 @@ void RenderWorker::stop() {
   if (current_ != nullptr) current_->request_cancel();
 }
 
-bool RenderWorker::busy() const {
-  const std::lock_guard lock(mutex_);
-  return current_ != nullptr || next_.has_value();
-}
-
 void RenderWorker::run() {
   // Threads that this one starts for its parallel loops inherit it. That it cannot be done harms nothing.
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);

@@ -66,7 +66,6 @@ class RenderWorker : public QObject {
   void draw(RenderOrder order);
   // Gives up what is drawn and what is asked for.
   void stop();
-  bool busy() const;
 
  signals:
   void picture(std::shared_ptr<const atomesh::gui::WorkerPicture> picture);
@@ -79,7 +78,7 @@ class RenderWorker : public QObject {
   std::shared_ptr<const Scene> scene_of(const RenderOrder& order, double& ms, Progress& progress);
   int coarse_levels(const RenderOrder& order) const;
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<RenderOrder> next_;
   Progress* current_ = nullptr;

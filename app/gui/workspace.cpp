@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/gui/job.h"
+#include "app/gui/navigation.h"
 #include "core/error.h"
 
 namespace atomesh::gui {
@@ -36,11 +37,7 @@ void take_group(Parameters& to, const Parameters& from, Mode mode) {
 Parameters for_another_sample(const Parameters& parameters) {
   const Parameters defaults;
   Parameters next = parameters;
-  next.azimuth = defaults.azimuth;
-  next.elevation = defaults.elevation;
-  next.roll = defaults.roll;
-  next.zoom = defaults.zoom;
-  next.pan = defaults.pan;
+  reset_orientation(next);
   next.cut_planes = defaults.cut_planes;
   next.volume.field = defaults.volume.field;
   next.volume.range_low = defaults.volume.range_low;

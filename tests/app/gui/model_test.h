@@ -20,7 +20,7 @@ inline QCoreApplication& core_application() {
 
 // Handles events until `condition` holds, or, and then it is false, for so long.
 inline bool wait_until(const std::function<bool()>& condition, int deadline_ms = 60000) {
-  core_application();
+  if (QCoreApplication::instance() == nullptr) core_application();
   QElapsedTimer watch;
   watch.start();
   QTimer wake;  // a condition may change without an event

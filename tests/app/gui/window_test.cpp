@@ -4,13 +4,10 @@
 
 #include <QApplication>
 #include <QDir>
-#include <QElapsedTimer>
-#include <QEventLoop>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
 #include <QSettings>
 #include <QTest>
-#include <QTimer>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -22,20 +19,13 @@
 #include "preprocess/pipeline.h"
 #include "preprocess/write_atoms.h"
 #include "samples/samples.h"
+#include "tests/app/gui/model_test.h"
 #include "tests/support/temporary_folder.h"
 
 namespace atomesh::test {
 
 bool wait_for(const std::function<bool()>& condition, int deadline_ms) {
-  QElapsedTimer watch;
-  watch.start();
-  QTimer wake;  // a condition may change without an event
-  wake.start(5);
-  while (!condition()) {
-    if (watch.elapsed() > deadline_ms) return false;
-    QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents | QEventLoop::AllEvents);
-  }
-  return true;
+  return wait_until(condition, deadline_ms);
 }
 
 void show(QWidget& widget) {
