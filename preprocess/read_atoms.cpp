@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include "core/content_hash.h"
 #include "core/error.h"
+#include "core/file_extension.h"
 #include "preprocess/read_formats.h"
 
 namespace atomesh {
@@ -45,9 +44,7 @@ const Format& format_named(std::string_view name) {
 }
 
 const Format* format_by_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(path);
   for (const Format& format : formats) {
     for (const std::string_view known : split_fields(format.extensions)) {
       if (extension == known) return &format;

@@ -8,22 +8,16 @@
 #include "app/cli/mesh_cells.h"
 #include "app/cli/plot3d_layout.h"
 #include "core/error.h"
+#include "core/file_extension.h"
 #include "core/text_file.h"
 
 namespace atomesh::cli {
 
 namespace {
 
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
-}
-
 // "" for a file that is no mesh.
 std::string format_of(const std::string& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".vtu") return "vtu";
   if (extension == ".vtk") return "vtk";
   if (extension == ".node" || extension == ".ele") return "tetgen";

@@ -198,7 +198,7 @@ void ColorMapEditor::build_range() {
   create_histogram_->setToolTip(tr("Write the counts to a file, histogram.csv"));
   connect(create_histogram_, &QPushButton::clicked, this, &ColorMapEditor::ask_where_to_write_histogram);
 
-  auto_apply_ = new QCheckBox(tr("A&uto Apply"), this);
+  auto_apply_ = new QCheckBox(tr("A&uto apply"), this);
   auto_apply_->setObjectName("auto_apply");
   auto_apply_->setToolTip(tr("Draw every change at once"));
   connect(auto_apply_, &QCheckBox::toggled, this, [this](bool on) { workspace_.set_auto_apply(Mode::volume, on); });

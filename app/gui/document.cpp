@@ -1,26 +1,14 @@
 #include "app/gui/document.h"
 
-#include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <filesystem>
 #include <utility>
 
 #include "core/error.h"
+#include "core/file_extension.h"
 #include "core/stopwatch.h"
 
 namespace atomesh::gui {
-
-namespace {
-
-std::string lower_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-}  // namespace
 
 FileKind file_kind(const std::string& path) {
   const std::string extension = lower_extension(path);

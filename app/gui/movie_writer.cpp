@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/file_extension.h"
 
 namespace atomesh::gui {
 
@@ -19,13 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array ffmpeg_endings{".mp4", ".mov", ".mkv", ".webm", ".avi"};
-
-std::string ending(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 // The number of "NAME-0123.png" in a series of NAME.png.
 std::optional<long> number_of(const std::string& file, const std::string& stem) {
@@ -100,7 +94,7 @@ class PictureSeries : public MovieWriter {
 }  // namespace
 
 MovieKind movie_kind(const std::string& path) {
-  const std::string end = ending(path);
+  const std::string end = lower_extension(path);
   if (end == ".ogv") return MovieKind::theora;
   if (end == ".png") return MovieKind::pictures;
   if (std::find(ffmpeg_endings.begin(), ffmpeg_endings.end(), end) != ffmpeg_endings.end()) return MovieKind::ffmpeg;
@@ -115,7 +109,7 @@ std::string movie_problem(const std::string& path) {
   return fmt::format(
       "{} movies are written by the program ffmpeg, which is not installed. Install it (Debian: apt "
       "install ffmpeg), or choose a name that ends in .ogv, or in .png for numbered pictures",
-      ending(path));
+      lower_extension(path));
 }
 
 std::unique_ptr<MovieWriter> make_movie_writer(const std::string& path, const MovieSettings& settings, int frames) {

@@ -6,11 +6,10 @@
 #include <QStringList>
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
 
 #include "app/gui/movie_writer.h"
 #include "core/error.h"
+#include "core/file_extension.h"
 #include "core/text_file.h"
 
 namespace atomesh::gui {
@@ -24,9 +23,7 @@ struct Codec {
 
 // H.264 and VP9 by constant quality, MPEG-4 where a container is old. Pixels as every player knows them.
 Codec codec_for(const std::string& path, int quality) {
-  std::string end = std::filesystem::path(path).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string end = lower_extension(path);
   const auto level = [quality](const std::array<const char*, 3>& levels) {
     return QString(levels[static_cast<std::size_t>(std::clamp(quality, 0, 2))]);
   };

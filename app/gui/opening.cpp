@@ -35,7 +35,7 @@ struct Opening::Wanted {
 // What is there, read beside the window.
 struct Opening::Found {
   FileKind kind = FileKind::material;
-  std::optional<Parameters> parameters;
+  Look look;
   std::optional<Document> document;
   std::optional<PictureState> picture;
   bool shown_already = false;  // the picture shows what is open
@@ -69,7 +69,7 @@ Opening::Opening(Workspace& workspace, QStackedWidget& pages, QWidget& view, con
   connect(preprocessing_, &PreprocessingPage::go_on, this, [this](const Document& document) {
     loader_->recent_files().add(text(document.path));
     for (const std::string& written : preprocessing_->run().written()) loader_->recent_files().add(text(written));
-    show(document, parameters_);
+    show(document, look_);
   });
   connect(preprocessing_, &PreprocessingPage::back_to_loader, this, [this](const QString& file) {
     loader_->set_file(file);
@@ -121,13 +121,14 @@ void Opening::find(const Wanted& wanted) {
   job_ = std::make_unique<Job>(
       tr("Opening %1").arg(name),
       [found, wanted, shown = workspace_.parameters(), open_now = workspace_.document()](Progress& progress) {
-        if (!wanted.parameters_file.empty()) found->parameters = cli::read_parameters(wanted.parameters_file);
+        if (!wanted.parameters_file.empty()) found->look.parameters = cli::read_parameters(wanted.parameters_file);
         if (wanted.path.empty()) return;
         found->kind = file_kind(wanted.path);
         std::string path = wanted.path;
         if (found->kind == FileKind::picture) {
           found->picture = read_picture_state(wanted.path, progress);
-          if (!found->parameters) found->parameters = found->picture->origin.parameters;
+          if (!found->look.parameters) found->look.parameters = found->picture->origin.parameters;
+          found->look.parts = found->picture->origin.parts;
           found->shown_already = open_now && shows(*found->picture, *open_now, progress);
           const auto& data = found->picture->data;
           if (found->shown_already || !data || data->match == PictureData::Match::atoms) return;
@@ -136,7 +137,7 @@ void Opening::find(const Wanted& wanted) {
         } else if (found->kind == FileKind::atoms) {
           return;
         }
-        found->document = open_document(path, parts_needed(found->parameters.value_or(shown)), progress);
+        found->document = open_document(path, parts_needed(found->look.parameters.value_or(shown)), progress);
       },
       nullptr, Job::Unheeded::leave);
   connect(job_.get(), &Job::done, this, [this, wanted, found] {
@@ -154,22 +155,23 @@ void Opening::find(const Wanted& wanted) {
 void Opening::take_found(const Wanted& wanted, Found& found) {
   if (!wanted.parameters_file.empty()) loader_->recent_parameters().add(text(wanted.parameters_file));
   if (wanted.path.empty()) {
-    workspace_.change(*found.parameters, tr("Load %1").arg(QFileInfo(text(wanted.parameters_file)).fileName()));
+    workspace_.change(*found.look.parameters, tr("Load %1").arg(QFileInfo(text(wanted.parameters_file)).fileName()));
     workspace_.say(tr("Parameters of %1").arg(text(wanted.parameters_file)));
   } else if (found.picture) {
     take_picture(wanted, found);
   } else if (found.kind == FileKind::atoms) {
-    preprocess(wanted.request ? *wanted.request : loader_->unasked_request(text(wanted.path)), found.parameters);
+    preprocess(wanted.request ? *wanted.request : loader_->unasked_request(text(wanted.path)), found.look);
   } else {
     loader_->recent_files().add(text(wanted.path));
-    show(std::move(*found.document), found.parameters);
+    show(std::move(*found.document), found.look);
   }
 }
 
 void Opening::take_picture(const Wanted& wanted, Found& found) {
   const PictureState& picture = *found.picture;
   if (found.shown_already) {
-    workspace_.change(*found.parameters, tr("View of %1").arg(QFileInfo(text(wanted.path)).fileName()));
+    workspace_.change(*found.look.parameters, tr("View of %1").arg(QFileInfo(text(wanted.path)).fileName()));
+    show_parts(found.look);
     pages_.setCurrentWidget(&view_);
     emit opened();
     return;
@@ -188,29 +190,39 @@ void Opening::take_picture(const Wanted& wanted, Found& found) {
       workspace_.say(
           tr("The picture's settings of preprocessing are not known here: %1").arg(QString::fromUtf8(error.what())));
     }
-    preprocess(request, found.parameters);
+    preprocess(request, found.look);
   } else {
-    show(std::move(*found.document), found.parameters);
+    show(std::move(*found.document), found.look);
   }
   if (other) workspace_.say(text(missing_data_text(picture, wanted.path)));
 }
 
-void Opening::preprocess(const PreprocessingRequest& request, const std::optional<Parameters>& parameters) {
+void Opening::preprocess(const PreprocessingRequest& request, const Look& look) {
   const QString problem = problem_with(request);
   if (!problem.isEmpty()) {
     fail(text(request.input), problem);
     return;
   }
-  parameters_ = parameters;
+  look_ = look;
   preprocessing_->start(request);
   pages_.setCurrentWidget(preprocessing_);
 }
 
-void Opening::show(Document document, const std::optional<Parameters>& parameters) {
-  workspace_.show_document(std::move(document), parameters);
+void Opening::show(Document document, const Look& look) {
+  show_parts(look);
+  workspace_.show_document(std::move(document), look.parameters);
   pages_.setCurrentWidget(&view_);
   view_.setFocus();
   emit opened();
+}
+
+void Opening::show_parts(const Look& look) {
+  if (!look.parts) return;
+  ViewOptions options = workspace_.view_options();
+  options.legend = look.parts->legend;
+  options.scale_bar = look.parts->scale_bar;
+  options.tripod = look.parts->tripod;
+  workspace_.set_view_options(options);
 }
 
 void Opening::fail(const QString& path, const QString& problem) {

@@ -30,7 +30,8 @@ class Opening : public QObject {
   ~Opening() override;
 
   // A file of any kind: materials and meshes are read, atoms preprocessed, a picture that atomesh made brings back its
-  // view with its data. With the parameters of a .crf; else ("") a picture's own, or those there are.
+  // view with its data, legend, scale bar and tripod on or off as in it. With the parameters of a .crf; else ("") a
+  // picture's own, or those there are.
   void open(const QString& path, const QString& parameters_file = {});
   // Those of a .crf, or of a picture, over the defaults: one step of the history.
   void load_parameters(const QString& path);
@@ -53,12 +54,18 @@ class Opening : public QObject {
  private:
   struct Wanted;
   struct Found;
+  // What comes with the data: of a .crf the parameters, of a picture also what lay over it.
+  struct Look {
+    std::optional<Parameters> parameters;
+    std::optional<cli::PictureParts> parts;
+  };
 
   void find(const Wanted& wanted);
   void take_found(const Wanted& wanted, Found& found);
   void take_picture(const Wanted& wanted, Found& found);
-  void preprocess(const PreprocessingRequest& request, const std::optional<Parameters>& parameters);
-  void show(Document document, const std::optional<Parameters>& parameters);
+  void preprocess(const PreprocessingRequest& request, const Look& look);
+  void show(Document document, const Look& look);
+  void show_parts(const Look& look);
   void fail(const QString& path, const QString& problem);
 
   Workspace& workspace_;
@@ -67,7 +74,7 @@ class Opening : public QObject {
   LoaderPage* loader_;
   PreprocessingPage* preprocessing_;
   std::unique_ptr<Job> job_;
-  std::optional<Parameters> parameters_;  // that go on with what is being preprocessed
+  Look look_;  // that goes on with what is being preprocessed
 };
 
 }  // namespace atomesh::gui

@@ -224,9 +224,7 @@ void ViewInput::give_up_drag() {
 
 void ViewInput::begin_interaction() {
   rest_.stop();
-  if (moving_) return;
   moving_ = true;
-  emit interaction_began();
 }
 
 void ViewInput::end_interaction() {
@@ -234,7 +232,6 @@ void ViewInput::end_interaction() {
   if (!moving_) return;
   moving_ = false;
   workspace_.end_gesture();
-  emit interaction_ended();
 }
 
 void ViewInput::change_in_passing(const Parameters& to, const QString& name) {

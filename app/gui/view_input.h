@@ -49,14 +49,10 @@ class ViewInput : public QObject {
   // workspace; else one is made for the look-up.
   void set_scene_source(std::function<std::shared_ptr<const WorkerPicture>()> source) { scene_ = std::move(source); }
 
-  // Between interaction_began() and interaction_ended(): the next picture is not for long.
-  bool moving() const { return moving_; }
   // The cut plane (index) whose handle is under the mouse or dragged.
   std::optional<std::size_t> hot_plane() const { return hot_plane_; }
 
  signals:
-  void interaction_began();
-  void interaction_ended();
   void hot_plane_changed();
   void looked_up();  // a click's look-up has ended, and the workspace knows what came of it
 
@@ -98,7 +94,7 @@ class ViewInput : public QObject {
   QWidget& view_;
   std::function<std::shared_ptr<const WorkerPicture>()> scene_;
   LatestJob job_;
-  QTimer rest_;  // after wheel and keys
+  QTimer rest_{this};  // after wheel and keys
 
   Drag drag_ = Drag::none;
   Qt::MouseButton button_ = Qt::NoButton;

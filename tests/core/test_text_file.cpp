@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/file_extension.h"
 #include "core/text_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -25,6 +26,14 @@ std::vector<std::string> lines_of(std::string_view text) {
   }
   EXPECT_EQ(reader.offset(), text.size());
   return lines;
+}
+
+TEST(LowerExtension, IsTheLastOneInLowerCase) {
+  EXPECT_EQ(lower_extension("Salt.CRB"), ".crb");
+  EXPECT_EQ(lower_extension("/home/A.B/salt.tar.Gz"), ".gz");
+  EXPECT_EQ(lower_extension("/home/A.B/salt"), "");
+  EXPECT_EQ(lower_extension(".crb"), "");                    // a hidden file's whole name
+  EXPECT_EQ(lower_extension("\u00e4.\u00c4B"), ".\u00c4b");  // others stay
 }
 
 TEST(LineReader, EveryEndingOfALine) {

@@ -128,25 +128,43 @@ TEST_F(OpeningInWindow, APictureBringsBackItsView) {
   const atomesh::testing::Workplace place;
   ASSERT_EQ(place.run({"sample", "nacl-cracked", "--atoms", "1800", "-o", "n.dat"}).exit_code, 0);
   ASSERT_EQ(place.run({"preprocess", "n.dat", "-o", "n.crb"}).exit_code, 0);
-  ASSERT_EQ(place.run({"render", "n.crb", "-o", "n.png", "--mode", "xray", "--set", "view.zoom=2.5"}).exit_code, 0);
+  ASSERT_EQ(
+      place.run({"render", "n.crb", "-o", "n.png", "--mode", "xray", "--set", "view.zoom=2.5", "--legend"}).exit_code,
+      0);
   const auto file = [&](const char* name) { return QString::fromStdString(place.path(name).string()); };
+  // What lies over the view is as in the picture too; the rest of the view's options is nobody else's.
+  const auto all_on = [&] { window->workspace().set_view_options({.cut_handles = false}); };
+  const ViewOptions as_in_the_picture{.legend = true, .scale_bar = false, .tripod = false, .cut_handles = false};
+  all_on();
   window->open(file("n.png"));
   ASSERT_TRUE(shows(file("n.crb")));
+  EXPECT_EQ(window->workspace().view_options(), as_in_the_picture);
+  EXPECT_TRUE(child<QAction>(*window, "option_legend").isChecked());
+  EXPECT_FALSE(child<QAction>(*window, "option_tripod").isChecked());
   EXPECT_EQ(window->workspace().parameters().mode, Mode::xray);
   EXPECT_EQ(window->workspace().parameters().zoom, 2.5);
   // Over what is open only the view changes.
   const QSignalSpy others(&window->workspace(), &Workspace::document_changed);
   window->workspace().set("view.zoom", "1");
+  all_on();
   window->open(file("n.png"));
   ASSERT_TRUE(wait_for([&] { return window->workspace().parameters().zoom == 2.5; }));
   EXPECT_EQ(others.size(), 0);
+  EXPECT_EQ(window->workspace().view_options(), as_in_the_picture);
 
   // Without the material, from the atoms with the picture's settings.
   window->workspace().close_document();
+  all_on();
   std::filesystem::remove(place.path("n.crb"));
   window->open(file("n.png"));
   ASSERT_TRUE(shows(file("n.dat")));
   EXPECT_EQ(window->workspace().parameters().zoom, 2.5);
+  EXPECT_EQ(window->workspace().view_options(), as_in_the_picture);
+  // Other files leave it as it is.
+  all_on();
+  window->open(file("n.dat"));
+  ASSERT_TRUE(wait_for([&] { return window->workspace().parameters().zoom == 1.0; }));
+  EXPECT_EQ(window->workspace().view_options(), ViewOptions{.cut_handles = false});
 
   window->workspace().close_document();
   std::filesystem::remove(place.path("n.dat"));

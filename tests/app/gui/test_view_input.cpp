@@ -117,8 +117,6 @@ class ViewInputTest : public testing::Test {
 };
 
 TEST_F(ViewInputTest, LeftDragTurnsTheView) {
-  QSignalSpy began(&input_, &ViewInput::interaction_began);
-  QSignalSpy ended(&input_, &ViewInput::interaction_ended);
   const Parameters before = now();
   for (const bool upright : {true, false}) {
     workspace_.set_view_options({.upright = upright});
@@ -137,9 +135,6 @@ TEST_F(ViewInputTest, LeftDragTurnsTheView) {
     EXPECT_EQ(now(), before);
     EXPECT_FALSE(workspace_.history().can_undo());
   }
-  EXPECT_EQ(began.size(), 2);
-  EXPECT_EQ(ended.size(), 2);
-  EXPECT_FALSE(input_.moving());
 }
 
 TEST_F(ViewInputTest, TwoDragsAreTwoSteps) {
@@ -185,8 +180,6 @@ TEST_F(ViewInputTest, ShiftLeftDragZooms) {
 }
 
 TEST_F(ViewInputTest, TheWheelZoomsAboutTheMouse) {
-  QSignalSpy began(&input_, &ViewInput::interaction_began);
-  QSignalSpy ended(&input_, &ViewInput::interaction_ended);
   const Parameters before = now();
   const Vec3 corner = workspace_.bounds().max;
   const QPointF at = place_of(corner);
@@ -194,10 +187,9 @@ TEST_F(ViewInputTest, TheWheelZoomsAboutTheMouse) {
   EXPECT_NEAR(now().zoom, std::pow(1.2, 3.0), 1e-12);
   const QPointF moved = place_of(corner) - at;
   EXPECT_NEAR(std::hypot(moved.x(), moved.y()), 0.0, 1e-9);
-  EXPECT_TRUE(input_.moving());
-  EXPECT_TRUE(ended.isEmpty());
-  ASSERT_TRUE(test::wait_for([&] { return !ended.isEmpty(); }));
-  EXPECT_EQ(began.size(), 1);
+  const auto* rest = input_.findChild<QTimer*>();
+  EXPECT_TRUE(rest->isActive());
+  ASSERT_TRUE(test::wait_for([&] { return !rest->isActive(); }));
   wheel(at, -60);
   EXPECT_NEAR(now().zoom, std::pow(1.2, 2.5), 1e-12);
   // The turns that followed one another at once are one step, the one after the rest another.
@@ -339,14 +331,11 @@ TEST_F(ViewInputTest, HandlesOfCutPlanesAreDragged) {
 
 TEST_F(ViewInputTest, EscapeGivesUpADrag) {
   const Parameters before = now();
-  QSignalSpy ended(&input_, &ViewInput::interaction_ended);
   press(from_);
   move(to_);
   EXPECT_NE(now(), before);
-  EXPECT_TRUE(input_.moving());
   EXPECT_TRUE(key(Qt::Key_Escape));
   EXPECT_EQ(now(), before);
-  EXPECT_EQ(ended.size(), 1);
   move(from_);
   release(from_);
   EXPECT_EQ(now(), before);
