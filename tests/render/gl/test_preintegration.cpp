@@ -1,0 +1,184 @@
+// segment.glsl: the light of a ray's segment, against the judge's quadrature.
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "render/cpu/reference_optics.h"
+#include "render/gl/context.h"
+#include "render/gl/objects.h"
+#include "render/gl/preintegration_table.h"
+
+using namespace atomesh;
+using namespace atomesh::gl;
+
+namespace {
+
+struct Segment {
+  float near = 0.0F;  // scalar
+  float far = 0.0F;
+  float length = 0.0F;  // Å
+  float unused = 0.0F;
+};
+
+// A compute shader that puts every segment of a buffer through segment_light().
+class SegmentShader {
+ public:
+  SegmentShader() {
+    const std::string source = "#version 430 core\n" + shader_source("segment.glsl") + R"glsl(
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Segments { vec4 segments[]; };
+layout(std430, binding = 1) writeonly buffer Lights { vec4 lights[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i < segments.length()) lights[i] = segment_light(segments[i].x, segments[i].y, segments[i].z);
+})glsl";
+    const char* text = source.c_str();
+    program_ = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
+    std::array<char, 4096> log{};
+    glGetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    EXPECT_STREQ(log.data(), "");
+  }
+  ~SegmentShader() { glDeleteProgram(program_); }
+  SegmentShader(const SegmentShader&) = delete;
+  SegmentShader& operator=(const SegmentShader&) = delete;
+
+  std::vector<Vec4f> lights(const PreintegrationTable& table, const std::vector<Segment>& segments) const {
+    Buffer in;
+    Buffer out;
+    in.write(std::span<const Segment>(segments));
+    out.reserve(segments.size() * sizeof(Vec4f));
+    in.bind_storage(0);
+    out.bind_storage(1);
+    table.bind();
+    glUseProgram(program_);
+    glDispatchCompute(static_cast<GLuint>((segments.size() + 63) / 64), 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    return out.read<Vec4f>(segments.size());
+  }
+
+ private:
+  GLuint program_ = 0;
+};
+
+struct NamedMap {
+  std::string name;
+  ColorMap map;
+};
+
+// Knots are floats, so that the judge has them where the shader has them.
+std::vector<NamedMap> maps() {
+  const Vec4f red(1, 0, 0, 1);
+  const Vec4f green(0, 1, 0, 0.5);
+  const Vec4f blue(0, 0, 1, 0);
+  std::vector<NamedMap> all{
+      {"gray", preset_color_map("gray")},
+      {"viridis", preset_color_map("viridis")},
+      {"figure 5.8", preset_color_map("seed-figure-5.8")},
+      {"jumps", {{{0.25, blue}, {0.25, red}, {0.5, red}, {0.5, green}, {0.75, green}, {0.75, blue}}}},
+      {"steep", {{{0.5, blue}, {0.50390625, red}, {0.5078125, green}, {0.75, green}, {0.7578125, blue}}}},
+      {"windows", {{{0.0, blue}, {0.3, blue}, {0.4, red}, {0.5, blue}, {0.8, blue}, {1.0, green}}}}};
+  for (NamedMap& map : all) {
+    for (ColorMapEntry& entry : map.map.entries) {
+      entry.scalar = static_cast<double>(static_cast<float>(entry.scalar));
+    }
+  }
+  return all;
+}
+
+// Everywhere, in small ranges, at and about knots, of equal scalars, of length 0.
+std::vector<Segment> segments(const ColorMap& map) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> one(0.0F, 1.0F);
+  std::vector<Segment> all;
+  const auto add = [&](float near, float far) {
+    all.push_back({std::clamp(near, 0.0F, 1.0F), std::clamp(far, 0.0F, 1.0F), 2.0F * one(random) * one(random)});
+  };
+  for (int i = 0; i < 120; ++i) {
+    add(one(random), one(random));
+    const float about = one(random);
+    add(about, about + 0.02F * (one(random) - 0.5F));
+    add(about, about);
+  }
+  std::uniform_int_distribution<std::size_t> entry(0, map.entries.size() - 1);
+  for (int i = 0; i < 40; ++i) {
+    const auto x = static_cast<float>(map.entries[entry(random)].scalar);
+    const auto y = static_cast<float>(map.entries[entry(random)].scalar);
+    add(x, y);
+    add(x, x);
+    add(x, y + 0.01F * (one(random) - 0.5F));
+    add(x + 0.01F * (one(random) - 0.5F), y);
+  }
+  for (int i = 0; i < 50; ++i) all.push_back({one(random), one(random), 0.0F});
+  all.push_back({0.0F, 1.0F, 1.0F});
+  all.push_back({1.0F, 0.0F, 1.0F});
+  return all;
+}
+
+// The largest error of a channel, and where.
+struct Worst {
+  double error = 0.0;
+  std::string where;
+};
+
+Worst worst_of(const ColorMap& map, double alpha_length, const std::vector<Segment>& segments,
+               const std::vector<Vec4f>& lights) {
+  Worst worst;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& s = segments[i];
+    const reference::Contribution exact = reference::integrate_mapped(
+        map, static_cast<double>(s.near), static_cast<double>(s.far), alpha_length, static_cast<double>(s.length));
+    const std::array<double, 4> expected{exact.color.r, exact.color.g, exact.color.b, 1.0 - exact.transmittance};
+    for (int k = 0; k < 4; ++k) {
+      const double error = std::abs(static_cast<double>(lights[i][k]) - expected[static_cast<std::size_t>(k)]);
+      if (!(error <= worst.error)) {
+        worst.error = std::isnan(error) ? 1e30 : error;
+        worst.where = std::to_string(s.near) + " to " + std::to_string(s.far) + " along " + std::to_string(s.length) +
+                      ", channel " + std::to_string(k);
+      }
+    }
+  }
+  return worst;
+}
+
+class Preintegration : public testing::Test {
+ protected:
+  HeadlessContext context_{true};
+  HeadlessContext::Current current_{context_};
+};
+
+TEST_F(Preintegration, ASegmentOfOneColorIsTheExponential) {
+  PreintegrationTable table;
+  const SegmentShader shader;
+  table.update({{{0.0, Vec4f(0.2, 0.4, 0.8, 0.5)}, {1.0, Vec4f(0.2, 0.4, 0.8, 0.5)}}}, 3.0);
+  const std::vector<Segment> some{{0.3F, 0.9F, 0.01F}, {0.9F, 0.1F, 0.5F}, {0.5F, 0.5F, 2.0F}, {0.0F, 1.0F, 100.0F}};
+  const std::vector<Vec4f> lights = shader.lights(table, some);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const double opacity = -std::expm1(-1.5 * static_cast<double>(some[i].length));
+    EXPECT_NEAR(lights[i].a, opacity, 1e-6);
+    EXPECT_NEAR(lights[i].r, 0.2 * opacity, 1e-6);
+    EXPECT_NEAR(lights[i].g, 0.4 * opacity, 1e-6);
+    EXPECT_NEAR(lights[i].b, 0.8 * opacity, 1e-6);
+  }
+  EXPECT_NO_THROW(check_errors("integrating segments"));
+}
+
+TEST_F(Preintegration, ExactIsTheJudge) {
+  PreintegrationTable table;
+  const SegmentShader shader;
+  for (const NamedMap& map : maps()) {
+    const std::vector<Segment> all = segments(map.map);
+    for (const double alpha_length : {1e-6, 0.25, 10.0, 1e3, 1e6}) {
+      table.update(map.map, alpha_length);
+      const Worst worst = worst_of(map.map, alpha_length, all, shader.lights(table, all));
+      EXPECT_LE(worst.error, 1e-5) << map.name << ", " << alpha_length << "/Å: " << worst.where;
+    }
+  }
+  EXPECT_NO_THROW(check_errors("integrating segments"));
+}
+
+}  // namespace
