@@ -10,8 +10,10 @@ namespace atomesh::gl {
 
 namespace {
 
-// 4.3 is what render/gl asks for everywhere else.
+// 4.3 is what render/gl asks for everywhere else; the interlock's extension is written against 4.5.
 constexpr std::string_view version_line = "#version 430 core\n";
+constexpr std::string_view interlock_lines =
+    "#version 450 core\n#extension GL_ARB_fragment_shader_interlock : require\n";
 
 std::string log_of(GLuint object, decltype(glGetShaderiv) ask, decltype(glGetShaderInfoLog) get) {
   GLint length = 0;
@@ -23,11 +25,9 @@ std::string log_of(GLuint object, decltype(glGetShaderiv) ask, decltype(glGetSha
 }
 
 std::string with_defines(std::string_view file, std::span<const std::string> defines) {
-  std::string source(version_line);
   // Extensions have to stand before anything else, so that a file asks for them by a define.
-  for (const std::string& define : defines) {
-    if (define == "INTERLOCK") source += "#extension GL_ARB_fragment_shader_interlock : require\n";
-  }
+  const bool interlock = std::ranges::find(defines, "INTERLOCK") != defines.end();
+  std::string source(interlock ? interlock_lines : version_line);
   for (const std::string& define : defines) source += "#define " + define + "\n";
   return source + shader_source(file);
 }

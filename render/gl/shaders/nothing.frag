@@ -1,0 +1,2 @@
+// For passes that are about depth, stencil and counting alone.
+void main() {}
