@@ -209,6 +209,10 @@ void add_volume(Table& t) {
         "Color and opacity coefficient of the normalized scalar: a preset, or 2 to 32 entries scalar:color with blanks "
         "between them.",
         of(&P::color_map));
+  t.choice("volume.solid", "Solids in the volume", {"none", "defects", "atoms", "walls"},
+           "What stands in the volume, opaque: balls of the atoms with a defect, balls of all atoms (both as in mode "
+           "atoms), or the surface seen from inside, behind everything (as in mode surface).",
+           of(&P::solid));
 }
 
 void add_xray(Table& t) {

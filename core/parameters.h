@@ -17,6 +17,10 @@ namespace atomesh {
 
 enum class Mode { volume_surface, volume, surface, xray, atoms };
 enum class Shading { flat, smooth };
+// What stands in the volume of mode volume, opaque and lit as in its own mode: nothing, balls for the atoms with a
+// defect (above AtomsParameters::regular_limit), balls for all atoms, the surface where rays leave it for
+// good.
+enum class VolumeSolid { none, defects, atoms, walls };
 enum class Projection { perspective, parallel };
 // How a ray's segment in a cell is integrated in the modes volume-surface and volume, from its two ends.
 //   exact: closed form; colour and opacity are linear between the knots of the colour map, and every knot counts
@@ -85,6 +89,7 @@ struct VolumeParameters {
   double extra_multiplier = 1.0;
   double vacancy_multiplier = 1.0;
   ColorMap color_map = preset_color_map("viridis");
+  VolumeSolid solid = VolumeSolid::none;
   bool operator==(const VolumeParameters&) const = default;
 };
 

@@ -27,6 +27,9 @@ struct Channels {
       nullptr;  // surface, atoms: depth along Camera::forward of the nearest hit, infinity where none
   std::vector<Index>* id =
       nullptr;  // surface: triangle, atoms: atom (Ball::atom) of the nearest hit; no_index where none
+  // Not an output: mode volume, of the window's size: depth at which each pixel's ray ends, because something opaque
+  // stands there (with_solids()); infinity where nothing does.
+  const std::vector<float>* ray_end = nullptr;
 };
 
 // A window of one view of one scene, prepared: projected, sorted into tiles, whatever the renderer needs to draw any of

@@ -40,6 +40,13 @@ void check_parts(const Material& material, Mode mode, bool cut) {
   }
 }
 
+// Balls of VolumeParameters::solid, all of them opaque.
+Parameters ball_parameters(const Parameters& parameters) {
+  Parameters balls = parameters;
+  balls.atoms.regular_opacity = parameters.volume.solid == VolumeSolid::atoms ? 1.0 : 0.0;
+  return balls;
+}
+
 void add_surface(Scene& scene, const Material& material, const Parameters& parameters, Borrowable<Triangle> surface) {
   scene.surface = std::move(surface);
   if (scene.mode == Mode::xray) return;
@@ -82,6 +89,23 @@ void add_mesh(Scene& scene, const Material& material, const Parameters& paramete
   if (scene.mode == Mode::volume) scene.scalars = vertex_scalars(material, parameters.volume);
 }
 
+std::shared_ptr<const Scene> make_solids(const Material& material, const Parameters& parameters, const Scene& whole,
+                                         Progress& progress) {
+  if (whole.mode != Mode::volume || parameters.volume.solid == VolumeSolid::none) return nullptr;
+  auto solids = std::make_shared<Scene>();
+  solids->bounds = whole.bounds;
+  solids->center = whole.center;
+  if (parameters.volume.solid == VolumeSolid::walls) {
+    solids->mode = Mode::surface;
+    solids->far_walls = true;
+    add_mesh(*solids, material, parameters, progress);
+  } else {
+    solids->mode = Mode::atoms;
+    solids->balls = make_balls(material, ball_parameters(parameters), whole.center);
+  }
+  return solids;
+}
+
 }  // namespace
 
 MaterialParts parts_needed(const Parameters& parameters) {
@@ -90,7 +114,8 @@ MaterialParts parts_needed(const Parameters& parameters) {
   MaterialParts parts;
   parts.atoms = true;  // the vertices of the mesh are atoms
   parts.tetrahedra = uses_tetrahedra(mode) || (uses_surface(mode) && cut);
-  parts.surface = uses_surface(mode) && !cut;
+  const bool walls = mode == Mode::volume && parameters.volume.solid == VolumeSolid::walls;
+  parts.surface = (uses_surface(mode) || walls) && !cut;
   parts.fields = uses_tetrahedra(mode);
   parts.defects = uses_tetrahedra(mode) || (mode == Mode::atoms && parameters.atoms.regular_opacity < 1.0);
   return parts;
@@ -116,6 +141,7 @@ Scene make_scene(const Material& material, const Parameters& parameters, Progres
     scene.balls = make_balls(material, parameters, scene.center);
   } else {
     add_mesh(scene, material, parameters, progress);
+    scene.solids = make_solids(material, parameters, scene, progress);
   }
   progress.update(1.0);
   return scene;
@@ -126,6 +152,11 @@ Scene make_scene(Material&& material, const Parameters& parameters, Progress& pr
   Scene scene = make_scene(given, parameters, progress);
   if (scene.tetrahedra.borrows()) scene.tetrahedra = std::move(material.mesh.tetrahedra);
   if (scene.surface.borrows()) scene.surface = std::move(material.surface.triangles);
+  if (scene.solids != nullptr && scene.solids->surface.borrows()) {
+    auto solids = std::make_shared<Scene>(*scene.solids);
+    solids->surface = std::move(material.surface.triangles);
+    scene.solids = std::move(solids);
+  }
   return scene;
 }
 

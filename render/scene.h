@@ -1,6 +1,7 @@
 // Material + Parameters → exactly what one mode needs to be drawn, in float about the scene's centre.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ struct Ball {
 //   surface:        vertices, vertex_normals 12 + 12 a vertex, face_normals 12 a triangle; surface
 //   xray:           vertices 12 a vertex; surface
 //   atoms:          balls 36 each
+// Solids in the volume are those of modes atoms or surface.
 // Cut planes add 16 a tetrahedron that is left (volume modes) and 12 a triangle. Atoms that fail a cut plane are gone,
 // with every tetrahedron that has one as a vertex; the surface is that of what is left.
 struct Scene {
@@ -51,6 +53,11 @@ struct Scene {
   std::vector<Vec3f> vertex_normals;  // of each vertex, zero inside; empty with flat shading
   bool delaunay = false;              // see TetMesh::delaunay
   std::vector<Ball> balls;
+  // Mode surface: what is seen is not the nearest triangle but the farthest of those that are seen from inside.
+  bool far_walls = false;
+  // What stands in the volume of mode volume (VolumeParameters::solid): a scene of mode atoms or surface about the same
+  // center, all of it opaque; null where nothing does.
+  std::shared_ptr<const Scene> solids;
 };
 
 // What the camera goes by, in the file's coordinates and the same in every mode, so that changing the mode does not

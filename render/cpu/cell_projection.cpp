@@ -70,6 +70,12 @@ struct BlockRegion {
   }
 };
 
+// Which rays are drawn, and where each of the window's ends (Channels::ray_end).
+struct Rays {
+  PixelLattice lattice;
+  const std::vector<float>* end;
+};
+
 class CellProjectionFrame final : public Frame {
  public:
   CellProjectionFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
@@ -109,7 +115,7 @@ class CellProjectionFrame final : public Frame {
     }
   }
 
-  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels&,
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
             Progress& progress) const override {
     const auto start = std::chrono::steady_clock::now();
     std::atomic<std::uint64_t> steps{0};
@@ -119,7 +125,7 @@ class CellProjectionFrame final : public Frame {
       clear_tile(tile, lattice, image);
       if (bins_.any_in(tile) || (layers_ && layers_->any_in(tile))) {
         std::unique_ptr<Tile> cells = pool_.take();
-        steps += draw_tile(tile, lattice, *cells, image, progress);
+        steps += draw_tile(tile, {lattice, channels.ray_end}, *cells, image, progress);
         pool_.give_back(std::move(cells));
       }
       const std::size_t finished = ++done;
@@ -133,6 +139,13 @@ class CellProjectionFrame final : public Frame {
   }
 
  private:
+  // u (cell_projection_kernel.h) of a depth.
+  float end_of_ray(float depth) const {
+    const auto z = static_cast<double>(depth);
+    const double u = view_.perspective ? 1.0 - view_.reference / z : z - view_.reference;
+    return std::min(static_cast<float>(u), view_.farthest);
+  }
+
   // Whether no cell can be invisible.
   bool all_opaque() const {
     if (scene_.mode == Mode::volume) return !intervals_.any_transparent();
@@ -186,15 +199,16 @@ class CellProjectionFrame final : public Frame {
                [&](std::size_t place, int, int) { image.pixels[place] = Vec4f(0.0F); });
   }
 
-  std::uint64_t draw_tile(std::size_t number, const PixelLattice& lattice, Tile& tile, Image& image,
+  std::uint64_t draw_tile(std::size_t number, const Rays& rays, Tile& tile, Image& image,
                           const Progress& progress) const {
+    const PixelLattice& lattice = rays.lattice;
     tile.layers.clear();
     if (layers_) layers_->find(number, lattice, tile.layers);
     std::vector<Index> cells;
     bins_.gather(number, cells);
     const BlockRegion region = all_blocks(lattice);
     if (lattice.column_stride > 1 || lattice.row_stride > 1) keep_cells_of(number, lattice, region, cells);
-    return draw_region(number, lattice, region, cells, tile, image, progress);
+    return draw_region(number, rays, region, cells, tile, image, progress);
   }
 
   // Leaves out the cells that lie beside all of the region's pixels.
@@ -221,13 +235,14 @@ class CellProjectionFrame final : public Frame {
   }
 
   // Cells that are too many at once are drawn in parts of the tile.
-  std::uint64_t draw_region(std::size_t number, const PixelLattice& lattice, const BlockRegion& region,
+  std::uint64_t draw_region(std::size_t number, const Rays& rays, const BlockRegion& region,
                             const std::vector<Index>& cells, Tile& tile, Image& image, const Progress& progress) const {
+    const PixelLattice& lattice = rays.lattice;
     const int columns = region.right - region.left;
     const int rows = region.bottom - region.top;
     if (cells.size() <= cells_at_once || columns * rows == 1) {
       set_up_tile(number, lattice, region, cells, tile);
-      return draw_blocks(number, lattice, region, tile, image, progress);
+      return draw_blocks(number, rays, region, tile, image, progress);
     }
     BlockRegion parts[2] = {region, region};
     if (columns >= rows) {
@@ -239,13 +254,14 @@ class CellProjectionFrame final : public Frame {
     for (const BlockRegion& part : parts) {
       std::vector<Index> kept = cells;
       keep_cells_of(number, lattice, part, kept);
-      steps += draw_region(number, lattice, part, kept, tile, image, progress);
+      steps += draw_region(number, rays, part, kept, tile, image, progress);
     }
     return steps;
   }
 
-  std::uint64_t draw_blocks(std::size_t number, const PixelLattice& lattice, const BlockRegion& region, Tile& tile,
-                            Image& image, const Progress& progress) const {
+  std::uint64_t draw_blocks(std::size_t number, const Rays& rays, const BlockRegion& region, Tile& tile, Image& image,
+                            const Progress& progress) const {
+    const PixelLattice& lattice = rays.lattice;
     tile.list_blocks();
     const BlockScratch scratch = tile.scratch();
     std::uint64_t steps = 0;
@@ -270,6 +286,16 @@ class CellProjectionFrame final : public Frame {
       block.tile_column = grid_.pixel_column(number);
       block.tile_row = grid_.pixel_row(number);
       block.lattice = lattice;
+      float farthest[block_pixels];
+      if (rays.end != nullptr) {
+        std::fill_n(farthest, block_pixels, view_.farthest);
+        const int column = b % blocks_per_side;
+        const int row = b / blocks_per_side;
+        for_pixels(number, lattice, {column, column + 1, row, row + 1}, [&](std::size_t place, int i, int j) {
+          farthest[j % block_side * block_side + i % block_side] = end_of_ray((*rays.end)[place]);
+        });
+        block.farthest = farthest;
+      }
       float rgba[4 * block_pixels];
       steps += kernel_.draw_block(view_, optics_, block, scratch, rgba);
       const int column = b % blocks_per_side;

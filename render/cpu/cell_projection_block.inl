@@ -193,7 +193,7 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
   std::uint32_t* const all_lanes = lists.lanes;
   std::uint32_t* const records = lists.record;
   const Lanes nearest(view.nearest);
-  const Lanes farthest(view.farthest);
+  const Lanes farthest = block.farthest != nullptr ? load(block.farthest) : Lanes(view.farthest);
   const std::uint32_t* const cells = block.cells;
   const CellPlanes* const planes = block.planes;
   const CellRefinement* const refinements = block.refinements;

@@ -190,6 +190,7 @@ struct BlockInput {
   std::size_t count;
   const LayerHit* layers;  // of the tile; those of the block's ray i: layer_begin[i] … layer_begin[i + 1] - 1,
   const std::uint32_t* layer_begin;  // nearest first. nullptr where no ray of the block has one
+  const float* farthest;             // u where each of the 16 rays ends; nullptr: View::farthest
   int column, row;                   // the block's first pixel, within the lattice's grid
   int tile_column, tile_row;         // the tile's first pixel
   PixelLattice lattice;

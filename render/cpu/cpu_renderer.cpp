@@ -3,6 +3,7 @@
 #include "render/cpu/atom_balls.h"
 #include "render/cpu/cell_projection.h"
 #include "render/cpu/surface_modes.h"
+#include "render/solids.h"
 
 namespace atomesh {
 
@@ -26,7 +27,8 @@ class CpuRenderer final : public Renderer {
       case Mode::volume:
         break;
     }
-    return prepare_cell_projection(scene, camera, parameters, window, stats, progress);
+    return with_solids(prepare_cell_projection(scene, camera, parameters, window, stats, progress), *this, scene,
+                       camera, parameters, window, stats, progress);
   }
 };
 

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "render/cpu/reference_modes.h"
+#include "render/solids.h"
 
 namespace atomesh {
 
@@ -29,12 +30,12 @@ struct Candidates {
               [&view](std::size_t i) { return view.sight.extent_of_ball(view.scene.balls[i]); }) {}
 };
 
-Seen see(const View& view, const Candidates& candidates, int column, int row) {
+Seen see(const View& view, const Candidates& candidates, int column, int row, double ray_end) {
   const PixelRay ray = view.sight.pixel_ray(column, row);
   switch (view.scene.mode) {
     case Mode::volume_surface:
     case Mode::volume:
-      return see_volume(view, ray, candidates.cells.at(column, row), candidates.triangles.at(column, row));
+      return see_volume(view, ray, candidates.cells.at(column, row), candidates.triangles.at(column, row), ray_end);
     case Mode::surface:
       return see_surface(view, ray, candidates.triangles.at(column, row));
     case Mode::xray:
@@ -73,8 +74,10 @@ class ReferenceFrame final : public Frame {
       for (std::size_t n = begin; n < end; ++n) {
         const int column = grid.column(static_cast<int>(n % static_cast<std::size_t>(grid.columns())));
         const int row = grid.row(static_cast<int>(n / static_cast<std::size_t>(grid.columns())));
-        const Seen seen = see(view_, candidates_, column, row);
         const std::size_t pixel = window_.place(column, row);
+        const double ray_end = channels.ray_end != nullptr ? static_cast<double>((*channels.ray_end)[pixel])
+                                                           : std::numeric_limits<double>::infinity();
+        const Seen seen = see(view_, candidates_, column, row, ray_end);
         image.pixels[pixel] = Vec4f(glm::dvec4(seen.light.color, 1.0 - seen.light.transmittance));
         if (thickness != nullptr) (*thickness)[pixel] = static_cast<float>(seen.thickness);
         if (depth != nullptr) (*depth)[pixel] = static_cast<float>(seen.depth);
@@ -106,9 +109,9 @@ class Reference final : public Renderer {
                                  const PixelWindow& window, RenderStats& stats, Progress& progress) const override {
     progress.stage("reference");
     const Clock::time_point start = Clock::now();
-    auto frame = std::make_unique<ReferenceFrame>(scene, camera, parameters, window, progress);
+    std::unique_ptr<Frame> frame = std::make_unique<ReferenceFrame>(scene, camera, parameters, window, progress);
     stats.setup_ms += ms_since(start);
-    return frame;
+    return with_solids(std::move(frame), *this, scene, camera, parameters, window, stats, progress);
   }
 };
 

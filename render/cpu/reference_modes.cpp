@@ -11,14 +11,24 @@ namespace atomesh::reference {
 
 namespace {
 
+std::array<double, 4> weights_at(const CellSegment& segment, double depth) {
+  const double u = (depth - segment.near_depth) / (segment.far_depth - segment.near_depth);
+  std::array<double, 4> weights = segment.near_weights;
+  for (std::size_t i = 0; i < 4; ++i) weights[i] += u * (segment.far_weights[i] - segment.near_weights[i]);
+  return weights;
+}
+
 // The segment from depth 0 on, for cells the eye is in.
 void clip_to_front(CellSegment& segment) {
   if (segment.near_depth >= 0.0) return;
-  const double u = (0.0 - segment.near_depth) / (segment.far_depth - segment.near_depth);
-  for (std::size_t i = 0; i < 4; ++i) {
-    segment.near_weights[i] += u * (segment.far_weights[i] - segment.near_weights[i]);
-  }
+  segment.near_weights = weights_at(segment, 0.0);
   segment.near_depth = 0.0;
+}
+
+// The segment up to that depth, which lies in it.
+void end_at(CellSegment& segment, double depth) {
+  segment.far_weights = weights_at(segment, depth);
+  segment.far_depth = depth;
 }
 
 Vec4 color_at(const Scene& scene, const Tetrahedron& cell, const std::array<double, 4>& weights) {
@@ -101,7 +111,8 @@ std::vector<TriangleOnRay> triangles_on_ray(const View& view, const PixelRay& ra
   return met;
 }
 
-Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> cells, std::span<const Index> triangles) {
+Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> cells, std::span<const Index> triangles,
+                double ray_end) {
   const double stretch = view.sight.stretch(ray);
   const std::vector<CellOnRay> met = cells_on_ray(view, ray, cells);
   const std::vector<TriangleOnRay> crossings = triangles_on_ray(view, ray, triangles);
@@ -114,7 +125,9 @@ Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> ce
       if (crossing->crossing.entering) compose(seen.light, layer_light(view, ray, *crossing));
     }
   };
-  for (const CellOnRay& on_ray : met) {
+  for (CellOnRay on_ray : met) {
+    if (on_ray.segment.near_depth >= ray_end) break;
+    if (on_ray.segment.far_depth > ray_end) end_at(on_ray.segment, ray_end);
     lay_up_to(on_ray.segment.near_depth);
     compose(seen.light, cross_cell_light(view, on_ray, stretch));
   }
@@ -124,7 +137,11 @@ Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> ce
 }
 
 Seen see_surface(const View& view, const PixelRay& ray, std::span<const Index> triangles) {
-  const std::vector<TriangleOnRay> met = triangles_on_ray(view, ray, triangles);
+  std::vector<TriangleOnRay> met = triangles_on_ray(view, ray, triangles);
+  if (view.scene.far_walls) {
+    std::erase_if(met, [](const TriangleOnRay& hit) { return hit.crossing.entering; });
+    std::reverse(met.begin(), met.end());
+  }
   Seen seen;
   if (met.empty()) return seen;
   const TriangleOnRay& hit = met.front();

@@ -1,6 +1,7 @@
 // The judge's five modes, each as the colour of one ray.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "render/cpu/reference_bins.h"
@@ -44,7 +45,9 @@ struct TriangleOnRay {
 };
 std::vector<TriangleOnRay> triangles_on_ray(const View& view, const PixelRay& ray, std::span<const Index> candidates);
 
-Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> cells, std::span<const Index> triangles);
+// The ray ends at depth `ray_end`.
+Seen see_volume(const View& view, const PixelRay& ray, std::span<const Index> cells, std::span<const Index> triangles,
+                double ray_end = std::numeric_limits<double>::infinity());
 Seen see_surface(const View& view, const PixelRay& ray, std::span<const Index> triangles);
 Seen see_xray(const View& view, const PixelRay& ray, std::span<const Index> triangles);
 Seen see_balls(const View& view, const optics::BallRay& ray, std::span<const Index> balls);

@@ -103,7 +103,9 @@ class SurfaceFrame final : public Frame {
  public:
   SurfaceFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, const PixelWindow& window,
                RenderStats& stats, const Progress& progress)
-      : surface_(scene, camera, window, stats, progress), shader_(scene, camera, parameters) {}
+      : surface_(scene, camera, window, stats, progress),
+        shader_(scene, camera, parameters),
+        far_walls_(scene.far_walls) {}
 
   void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
             Progress& progress) const override {
@@ -121,7 +123,10 @@ class SurfaceFrame final : public Frame {
       std::array<Hit, tile_pixels> nearest;
       std::fill_n(nearest.begin(), grid.rows() * tile_side, none);
       cross_all([&](std::size_t at, Index triangle, const Crossing& crossing) {
-        if (crossing.depth < nearest[at].depth) nearest[at] = {crossing.depth, triangle, crossing.entering};
+        Hit& hit = nearest[at];
+        const bool seen = far_walls_ ? !crossing.entering && (hit.triangle == no_index || crossing.depth > hit.depth)
+                                     : crossing.depth < hit.depth;
+        if (seen) hit = {crossing.depth, triangle, crossing.entering};
       });
       for_pixels(grid, [&](int column, int row, std::size_t at) {
         const Hit& hit = nearest[at];
@@ -140,6 +145,7 @@ class SurfaceFrame final : public Frame {
  private:
   BinnedSurface surface_;
   SurfaceShader shader_;
+  bool far_walls_;
 };
 
 class XrayFrame final : public Frame {

@@ -240,6 +240,25 @@ void steep(Parameters& p) {
     p.volume.color_map.entries.push_back({i / 31.0, i % 2 == 0 ? Vec4f(1, 0, 0, 0.01F) : Vec4f(0, 0, 1, 1)});
   }
 }
+void defect_balls(Parameters& p) {
+  p.volume.solid = VolumeSolid::defects;
+  p.atoms.regular_limit = 0.7;
+  p.atoms.scale = 0.5;
+}
+void balls_cut(Parameters& p) {
+  p.volume.solid = VolumeSolid::atoms;
+  p.volume.alpha_length = 1.0;
+  p.atoms.scale = 0.4;
+  cut(p);
+}
+void walls(Parameters& p) {
+  p.volume.solid = VolumeSolid::walls;
+}
+void walls_near(Parameters& p) {
+  walls(p);
+  near(p);
+  p.shading = Shading::flat;
+}
 void glassy(Parameters& p) {
   p.atoms.regular_opacity = 0.2;
 }
@@ -264,7 +283,10 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"volume_surface_no_layer", Mode::volume_surface, no_layer},
         Variant{"volume_surface_opaque_layer", Mode::volume_surface, opaque_layer},
         Variant{"volume_jumps", Mode::volume, jumps}, Variant{"volume_steep", Mode::volume, steep},
-        Variant{"atoms_glassy", Mode::atoms, glassy}, Variant{"atoms_big", Mode::atoms, big}),
+        Variant{"volume_defect_balls", Mode::volume, defect_balls},
+        Variant{"volume_balls_cut", Mode::volume, balls_cut}, Variant{"volume_walls", Mode::volume, walls},
+        Variant{"volume_walls_near", Mode::volume, walls_near}, Variant{"atoms_glassy", Mode::atoms, glassy},
+        Variant{"atoms_big", Mode::atoms, big}),
     [](const auto& variant) { return variant.param.name; });
 
 class EyeInside : public testing::TestWithParam<Mode> {};

@@ -69,9 +69,14 @@ TEST(Frames, EveryWindowAndLatticeIsThePictureToTheLastBit) {
                                            {3, 0, 1, height}};
     const std::vector<PixelLattice> lattices{{1, 1, 0, 0}, {2, 2, 1, 0}, {4, 4, 2, 2}, {8, 8, 0, 0},
                                              {8, 8, 4, 4}, {2, 8, 1, 5}, {8, 1, 7, 0}};
-    for (const Mode mode : all_modes) {
+    std::vector<std::pair<Mode, VolumeSolid>> kinds{{Mode::volume, VolumeSolid::atoms},
+                                                    {Mode::volume, VolumeSolid::walls}};
+    for (const Mode mode : all_modes) kinds.emplace_back(mode, VolumeSolid::none);
+    for (const auto& [mode, solid] : kinds) {
       for (const Projection projection : {Projection::parallel, Projection::perspective}) {
         Subject subject = shaken_box(mode, projection, width, height);
+        subject.parameters.volume.solid = solid;
+        if (solid != VolumeSolid::none) subject.scene = make_scene(subject.material, subject.parameters);
         const Drawn whole = draw(renderer, subject.scene, subject.camera, subject.parameters);
         for (const PixelWindow& window : windows) {
           for (const PixelLattice& lattice : lattices) expect_part_of(whole, renderer, subject, window, lattice);

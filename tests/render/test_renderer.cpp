@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
+#include "render/cpu/reference.h"
 #include "render/renderer.h"
 #include "tests/render/fixtures.h"
 
@@ -140,6 +142,67 @@ TEST(Render, CancelsAndGivesEmptyPicturesOfEmptyScenes) {
       progress.request_cancel();
       EXPECT_THROW(render(find_renderer(name), scene, camera, parameters, stats, {}, progress), CancelledError) << name;
     }
+  }
+}
+
+// A box of one density with a ball in its middle: through the ball's middle a ray passes the box up to the ball, and
+// then sees it; beside it all of the box.
+TEST(Solids, EndRaysWhereTheyStand) {
+  Material material = box_material(4, 4, 4, 1.0);
+  material.defects.positional.assign(material.atoms.size(), 0.0F);
+  material.defects.vacancy = material.defects.extra = material.defects.positional;
+  const Vec3 middle(2.0, 2.0, 2.0);
+  std::size_t atom = 0;
+  for (std::size_t a = 0; a < material.atoms.size(); ++a) {
+    if (glm::distance(material.atoms.positions[a], middle) < 1e-9) atom = a;
+  }
+  material.defects.positional[atom] = 1.0F;
+  Parameters parameters = looking(Mode::volume, "front");
+  parameters.volume.alpha_length = 0.5;
+  parameters.volume.color_map.entries = {{0.0, {0.25F, 0.5F, 1.0F, 1.0F}}, {1.0, {0.25F, 0.5F, 1.0F, 1.0F}}};
+  parameters.volume.solid = VolumeSolid::defects;
+  parameters.lights = {};  // ambient light alone: one color all over the ball
+  const Scene scene = make_scene(material, parameters);
+  ASSERT_NE(scene.solids, nullptr);
+  ASSERT_EQ(scene.solids->balls.size(), 1U);
+  const double radius = static_cast<double>(scene.solids->balls.front().radius);
+  ASSERT_LT(radius, 1.9);
+  Camera camera = make_camera(parameters, scene.bounds, 65, 65);
+  parameters.mode = Mode::atoms;
+  parameters.atoms.regular_opacity = 0.0;
+  const Vec4f ball = draw(reference_renderer(), make_scene(material, parameters), camera, parameters).image.at(32, 32);
+  ASSERT_EQ(ball.a, 1.0F);
+  parameters.mode = Mode::volume;
+  for (const std::string& name : renderer_names()) {
+    const Image image = draw(find_renderer(name), scene, camera, parameters).image;
+    const double through = std::exp(-0.5 * (2.0 - radius));
+    const Vec4f at_ball = image.at(32, 32);
+    EXPECT_NEAR(at_ball.r, (1.0 - through) * 0.25 + through * static_cast<double>(ball.r), 2e-3) << name;
+    EXPECT_NEAR(at_ball.g, (1.0 - through) * 0.5 + through * static_cast<double>(ball.g), 2e-3) << name;
+    EXPECT_NEAR(at_ball.b, (1.0 - through) + through * static_cast<double>(ball.b), 2e-3) << name;
+    EXPECT_NEAR(at_ball.a, 1.0, 1e-6) << name;
+    const int beside = 32 + static_cast<int>(std::ceil((radius + 0.1) / camera.pixel));
+    ASSERT_LT((beside - 32) * camera.pixel, 1.95);
+    EXPECT_NEAR(image.at(beside, 32).a, 1.0 - std::exp(-2.0), 1e-3) << name;
+  }
+}
+
+// Behind a box that is hardly there its far wall is seen, lit from where the eye is, and nothing of its near one.
+TEST(Solids, WallsAreBehindEverything) {
+  Material material = box_material(4, 4, 4, 1.0);
+  add_defects(material, 3);
+  Parameters parameters = looking(Mode::volume, "front");
+  parameters.volume.solid = VolumeSolid::walls;
+  const Scene scene = make_scene(material, parameters);
+  const Camera camera = make_camera(parameters, scene.bounds, 33, 33);
+  for (const std::string& name : renderer_names()) {
+    RenderStats stats;
+    std::vector<float> depth;
+    const Image walls =
+        find_renderer(name).draw(*scene.solids, camera, parameters, stats, {nullptr, &depth, nullptr}, no_progress());
+    EXPECT_EQ(walls.at(16, 16).a, 1.0F) << name;
+    const double far = glm::dot(Vec3(2.0, 4.0, 2.0) - camera.eye, camera.forward);
+    EXPECT_NEAR(depth[16 * 33 + 16], far, 1e-4) << name;
   }
 }
 
