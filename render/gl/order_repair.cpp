@@ -156,7 +156,6 @@ void OrderRepair::repair(GLuint framebuffer, int width, int height, const std::f
   const auto start = std::chrono::steady_clock::now();
   const Part window{0, 0, width, height};
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, width, height);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glEnable(GL_STENCIL_TEST);

@@ -49,7 +49,8 @@ class OrderRepair {
   std::string_view fragment_shader() const;
   std::vector<std::string> defines() const;
 
-  // `framebuffer`: the first pass's, width × height, a float colour buffer first, and stencil. `draw` uses the program
+  // `framebuffer`: the first pass's, width × height, a float colour buffer first, and stencil; the viewport stays as it
+  // is, and covers it. `draw` uses the program
   // and draws the cells in the same order; it is not called where no pixel is marked, and once for each part of the
   // window where lists need more memory than they may have. A pixel whose list alone needs more stays without its last
   // fragments, and counts as wrong. Afterwards no depth, stencil or scissor test is on, nothing blends, and all is
