@@ -7,6 +7,7 @@
 #include "render/cpu/cpu_renderer.h"
 #include "render/cpu/reference.h"
 #include "render/finish.h"
+#include "render/gl/havs_renderer.h"
 
 namespace atomesh {
 
@@ -23,12 +24,19 @@ const std::vector<Entry>& registry() {
   return entries;
 }
 
+// Those of some modes only, asked for by name.
+const std::vector<Entry>& special_registry() {
+  static const std::vector<Entry> entries{{"havs", havs_renderer}};
+  return entries;
+}
+
 // Renderers with a name of their own that other builds may have.
-constexpr std::array<std::string_view, 2> elsewhere{"havs", "cuda"};
+constexpr std::array<std::string_view, 1> elsewhere{"cuda"};
 
 std::string listed_names() {
   std::string list = "auto";
   for (const Entry& entry : registry()) list += ", " + std::string(entry.name);
+  for (const Entry& entry : special_registry()) list += ", " + std::string(entry.name);
   return list;
 }
 
@@ -46,10 +54,15 @@ const Renderer& find_renderer(std::string_view name) {
   for (const Entry& entry : registry()) {
     if (entry.name == name || name == "auto") return entry.get();
   }
+  for (const Entry& entry : special_registry()) {
+    if (entry.name == name) return entry.get();
+  }
   if (name == "auto" || std::find(elsewhere.begin(), elsewhere.end(), name) != elsewhere.end()) {
     throw UnavailableError("renderer \"" + std::string(name) + "\": not in this build; there is " + listed_names());
   }
-  const std::string nearest = nearest_name(name, renderer_names());
+  std::vector<std::string> names = renderer_names();
+  for (const Entry& entry : special_registry()) names.emplace_back(entry.name);
+  const std::string nearest = nearest_name(name, names);
   throw UsageError("renderer \"" + std::string(name) + "\": there is " + listed_names() +
                    (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
 }

@@ -49,7 +49,7 @@ class Frame {
                     Progress& progress) const = 0;
 };
 
-// A renderer draws all five modes of a Scene. It returns the picture over a transparent background: premultiplied RGB
+// A renderer draws all five modes of a Scene ("havs": volume, and throws UsageError for the others). It returns the picture over a transparent background: premultiplied RGB
 // and coverage A (0 where the ray meets nothing), so that the background is laid under it in one place.
 class Renderer {
  public:
@@ -63,9 +63,10 @@ class Renderer {
              const Channels& channels, Progress& progress) const;
 };
 
-// "reference", "cpu"; "auto" picks the first of cpu, reference that this build has. Throws UsageError listing the
-// names, UnavailableError (listing them too) for "havs" and "cuda" in a build without them.
+// "reference", "cpu", "havs"; "auto" picks the first of cpu, reference that this build has. Throws UsageError listing
+// the names, UnavailableError (listing them too) for "cuda".
 const Renderer& find_renderer(std::string_view name);
+// Of those that draw every mode.
 std::vector<std::string> renderer_names();
 
 // The final picture: draws with n×n rays a pixel where asked (Parameters::supersampling; the rays stand on a regular

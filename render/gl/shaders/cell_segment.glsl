@@ -1,0 +1,30 @@
+// The segment of a ray in a cell, of a fragment of cells.vert.
+#include "segment.glsl"
+
+noperspective in vec4 entry_at;
+noperspective in vec2 way_at;
+
+uniform float reference;  // ScreenView::reference
+uniform float last_w;     // ScreenView::last_w
+uniform vec4 direction;   // x and y of the image plane at the fragment = direction.xy + direction.zw · gl_FragCoord.xy
+
+vec4 cell_light() {
+  float w = way_at.x;
+  // Never farther than the farthest vertex: far outside of thin triangles rounding makes anything.
+  float way = clamp(min(min(entry_at.y, entry_at.z), entry_at.w), 0.0, last_w - w);
+  float u = entry_at.x;
+  float far_u = u + way_at.y * way;
+#ifdef PERSPECTIVE
+  float far_w = w + way;
+  float per_product = 1.0 / (w * far_w);
+  float near_scalar = -u * far_w * per_product;
+  float far_scalar = -far_u * w * per_product;
+  vec2 slope = direction.xy + direction.zw * gl_FragCoord.xy;
+  float segment = reference * way * per_product * sqrt(1.0 + dot(slope, slope));
+#else
+  float near_scalar = u;
+  float far_scalar = far_u;
+  float segment = way;
+#endif
+  return segment_light(clamp(near_scalar, 0.0, 1.0), clamp(far_scalar, 0.0, 1.0), segment);
+}

@@ -1,0 +1,54 @@
+// OpenGL's state as whoever owns the context left it.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <array>
+
+namespace atomesh::gl {
+
+// Restores on destruction what drawing a volume changes: framebuffer, viewport, scissor, program, vertex array,
+// blending, depth and stencil test, masks, clear values, buffers and the textures of units 0 to texture_units - 1.
+class StateGuard {
+ public:
+  StateGuard();
+  ~StateGuard();
+  StateGuard(const StateGuard&) = delete;
+  StateGuard& operator=(const StateGuard&) = delete;
+
+ private:
+  static constexpr int texture_units = 9;
+  static constexpr std::array<GLenum, 8> switches_{GL_BLEND,     GL_DEPTH_TEST,  GL_STENCIL_TEST, GL_SCISSOR_TEST,
+                                                   GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DITHER,       GL_MULTISAMPLE};
+  std::array<bool, switches_.size()> enabled_{};
+  struct Unit {
+    GLint texture_2d = 0;
+    GLint texture_3d = 0;
+    GLint texture_buffer = 0;
+  };
+  std::array<Unit, texture_units> units_{};
+  struct StencilSide {
+    GLint function = 0, reference = 0, compare_mask = 0, write_mask = 0, fail = 0, depth_fail = 0, pass = 0;
+  };
+  std::array<StencilSide, 2> stencil_{};  // front, back
+  std::array<GLint, 4> viewport_{};
+  std::array<GLint, 4> scissor_{};
+  std::array<GLint, 4> blend_functions_{};  // RGB source and destination, alpha source and destination
+  std::array<GLint, 2> blend_equations_{};
+  std::array<GLboolean, 4> color_mask_{};
+  std::array<GLfloat, 4> clear_color_{};
+  GLfloat clear_depth_ = 1.0F;
+  GLint clear_stencil_ = 0;
+  GLint depth_function_ = 0;
+  GLboolean depth_mask_ = GL_TRUE;
+  GLint draw_framebuffer_ = 0;
+  GLint read_framebuffer_ = 0;
+  GLint program_ = 0;
+  GLint vertex_array_ = 0;
+  GLint array_buffer_ = 0;
+  GLint pack_buffer_ = 0;
+  GLint pack_alignment_ = 4;
+  GLint active_texture_ = 0;
+};
+
+}  // namespace atomesh::gl

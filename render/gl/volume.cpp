@@ -1,0 +1,227 @@
+#include "render/gl/volume.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "render/gl/front_faces.h"
+#include "render/gl/state_guard.h"
+
+namespace atomesh::gl {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A thread's share of a slab, and a slab: 19 MB of vertices.
+constexpr std::size_t cells_per_share = 4096;
+constexpr std::size_t cells_per_slab = 16 * cells_per_share;
+constexpr std::size_t vertices_per_cell = 3 * most_faces;
+constexpr std::size_t slab_bytes = cells_per_slab * vertices_per_cell * sizeof(FaceVertex);
+
+// Slabs of a view that is drawn again are kept up to so many bytes.
+constexpr std::size_t kept_bytes = std::size_t{512} << 20;
+
+GLint integer(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+bool same(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.right == b.right && a.up == b.up && a.forward == b.forward && a.projection == b.projection;
+}
+
+}  // namespace
+
+Volume::Volume() : driver_(current_driver()) {
+  require_sufficient_driver();
+  const std::array<std::string, 1> perspective{"PERSPECTIVE"};
+  perspective_ = Program::draw("cells.vert", "blend.frag", perspective);
+  parallel_ = Program::draw("cells.vert", "blend.frag");
+  std::array<GLint, 2> viewport{};
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+  viewport_side_ = std::min({viewport[0], viewport[1], 2 * guard_pixels});
+  // A power of two: places on the screen are then exact in clip space.
+  while ((viewport_side_ & (viewport_side_ - 1)) != 0) viewport_side_ &= viewport_side_ - 1;
+  largest_side_ = std::min(integer(GL_MAX_TEXTURE_SIZE), viewport_side_);
+  vertex_array_ = make_vertex_array();
+  framebuffer_ = make_framebuffer();
+}
+
+void Volume::set_scene(const Scene& scene) {
+  scene_ = &scene;
+  view_.reset();
+  order_.reset();
+}
+
+bool Volume::same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const {
+  return view_ && same(view_->camera, camera) && view_->grid == grid && view_->color_map == parameters.volume.color_map;
+}
+
+void Volume::find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters,
+                        const Progress& progress) {
+  view_.reset();
+  const Clock::time_point start = Clock::now();
+  mesh_ = std::make_unique<ScreenMesh>(*scene_, camera, grid,
+                                       cell_projection::MapIntervals(parameters.volume.color_map), progress);
+  last_.project_ms = ms_since(start);
+  const Clock::time_point sorting = Clock::now();
+  if (!order_) order_ = std::make_unique<CellOrder>(*scene_, false);
+  std::vector<Index> order;
+  CellOrderStats order_stats;
+  order_->sort(camera, mesh_->cells(), {}, order, order_stats);
+  parts_ = mesh_->parts(order);
+  last_.order_ms = ms_since(sorting);
+  last_.cells = order.size();
+  slabs_kept_ = false;
+  view_ = View{camera, grid, parameters.volume.color_map};
+}
+
+void Volume::fill(Slab& slab, std::span<const Index> parts) {
+  const Clock::time_point start = Clock::now();
+  const std::size_t shares = (parts.size() + cells_per_share - 1) / cells_per_share;
+  slab.vertices.reserve(slab_bytes, GL_STREAM_DRAW);
+  slab.first.resize(shares);
+  slab.count.resize(shares);
+  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
+  auto* vertices = static_cast<FaceVertex*>(glMapBufferRange(
+      GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(parts.size() * vertices_per_cell * sizeof(FaceVertex)),
+      GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
+  if (vertices == nullptr) {
+    check_errors("mapping vertices");
+    throw UnavailableError("OpenGL: memory for vertices cannot be mapped (" + driver_.renderer + ")");
+  }
+  parallel_for(parts.size(), cells_per_share, [&](std::size_t begin, std::size_t end) {
+    const std::size_t first = begin * vertices_per_cell;
+    std::size_t triangles = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      triangles += front_faces(mesh_->corners(parts[i]), mesh_->view().grid, vertices + first + 3 * triangles);
+    }
+    slab.first[begin / cells_per_share] = static_cast<GLint>(first);
+    slab.count[begin / cells_per_share] = static_cast<GLsizei>(3 * triangles);
+  });
+  glUnmapBuffer(GL_ARRAY_BUFFER);
+  for (const GLsizei count : slab.count) last_.triangles += static_cast<std::size_t>(count) / 3;
+  last_.faces_ms += ms_since(start);
+}
+
+void Volume::resize(int columns, int rows) {
+  columns_ = columns;
+  rows_ = rows;
+  if (color_.width() >= columns && color_.height() >= rows) return;
+  const int width = std::max(columns, color_.width());
+  const int height = std::max(rows, color_.height());
+  color_ = Texture();
+  depth_ = Texture();
+  color_ = Texture::make_2d(GL_RGBA32F, width, height);
+  depth_ = Texture::make_2d(GL_DEPTH32F_STENCIL8, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.name(), 0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
+  check_errors("making the picture");
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw UnavailableError("OpenGL: the driver \"" + driver_.renderer + "\" cannot draw into floats");
+  }
+}
+
+void Volume::begin_pass(const Program& program) const {
+  const ScreenView& view = mesh_->view();
+  program.use();
+  const double depth_scale = 2.0 / (static_cast<double>(view.last_w) - static_cast<double>(view.first_w));
+  glUniform1f(program.uniform("pixel_scale"), 2.0F / static_cast<float>(viewport_side_));
+  glUniform2f(program.uniform("depth_scale"), static_cast<GLfloat>(depth_scale),
+              static_cast<GLfloat>(-1.0 - static_cast<double>(view.first_w) * depth_scale));
+  glUniform1f(program.uniform("reference"), static_cast<GLfloat>(view.reference));
+  glUniform1f(program.uniform("last_w"), view.last_w);
+  // gl_FragCoord of pixel (i, j) is (i + 1/2, j + 1/2).
+  const PixelGrid& grid = view.grid;
+  glUniform4f(program.uniform("direction"), static_cast<GLfloat>(grid.x - 0.5 * grid.dx),
+              static_cast<GLfloat>(grid.y + 0.5 * grid.dy), static_cast<GLfloat>(grid.dx),
+              static_cast<GLfloat>(-grid.dy));
+  table_.bind();
+}
+
+void Volume::draw_slab(const Slab& slab) const {
+  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
+  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
+  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
+                        reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
+  glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+}
+
+void Volume::draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+                  const PixelLattice& lattice, RenderStats& stats, Progress& progress) {
+  const Clock::time_point start = Clock::now();
+  const StateGuard guard;
+  const PixelGrid grid = pixel_grid(camera, window, lattice);
+  resize(grid.columns, grid.rows);
+  if (grid.columns == 0 || grid.rows == 0) return;
+  last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
+  if (!same_view(camera, grid, parameters)) find_cells(camera, grid, parameters, progress);
+  stats.setup_ms += ms_since(start);
+
+  const Clock::time_point drawing = Clock::now();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, columns_, rows_);
+  glViewport(columns_ / 2 - viewport_side_ / 2, rows_ / 2 - viewport_side_ / 2, viewport_side_, viewport_side_);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glStencilMask(0xFF);
+  const std::array<GLfloat, 4> nothing{};
+  glClearBufferfv(GL_COLOR, 0, nothing.data());
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0F, 0);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_FUNC_ADD);
+  glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_STENCIL_TEST);
+  glEnable(GL_DEPTH_CLAMP);
+  table_.update(parameters.volume.color_map, parameters.volume.alpha_length);
+  begin_pass(camera.projection == Projection::perspective ? perspective_ : parallel_);
+  glBindVertexArray(vertex_array_.name());
+  glEnableVertexAttribArray(0);
+  glEnableVertexAttribArray(1);
+
+  const std::size_t count = (parts_.size() + cells_per_slab - 1) / cells_per_slab;
+  const bool keep = count * slab_bytes <= kept_bytes;
+  if (!slabs_kept_) last_.triangles = 0;
+  slabs_.resize(keep ? count : 1);
+  for (std::size_t n = 0; n < count; ++n) {
+    progress.check();
+    Slab& slab = slabs_[keep ? n : 0];
+    if (!slabs_kept_) {
+      const std::size_t begin = n * cells_per_slab;
+      fill(slab, std::span(parts_).subspan(begin, std::min(cells_per_slab, parts_.size() - begin)));
+    }
+    draw_slab(slab);
+    progress.update(static_cast<double>(n + 1) / static_cast<double>(count));
+  }
+  slabs_kept_ = keep;
+  glFinish();
+  check_errors("drawing the volume");
+  progress.update(1.0);
+  last_.draw_ms = ms_since(drawing) - last_.faces_ms;
+  stats.render_ms += ms_since(drawing);
+}
+
+Image Volume::read() const {
+  Image image(columns_, rows_);
+  if (image.pixels.empty()) return image;
+  const StateGuard guard;
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glReadPixels(0, 0, columns_, rows_, GL_RGBA, GL_FLOAT, image.pixels.data());
+  check_errors("reading the picture");
+  return image;
+}
+
+}  // namespace atomesh::gl

@@ -1,0 +1,102 @@
+// Mode volume on OpenGL: every ray's segment in every cell as a fragment, front to back, composed by blending.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/parameters.h"
+#include "core/progress.h"
+#include "render/gl/cell_order.h"
+#include "render/gl/context.h"
+#include "render/gl/objects.h"
+#include "render/gl/preintegration_table.h"
+#include "render/gl/screen_mesh.h"
+#include "render/pixel_lattice.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+
+namespace atomesh::gl {
+
+// What the last picture was made of.
+struct VolumeStats {
+  std::size_t cells = 0;      // drawn: not transparent, not beside the picture
+  std::size_t triangles = 0;  // front faces of theirs
+  double project_ms = 0.0;    // vertices, which cells
+  double order_ms = 0.0;
+  double faces_ms = 0.0;  // front faces, handed to OpenGL
+  double draw_ms = 0.0;   // OpenGL
+};
+
+// Of one context, which is current whenever anything of it is called, the destructor included.
+// OpenGL's state is left as it was found.
+class Volume {
+ public:
+  // Throws UnavailableError unless the driver is sufficient and takes the shaders.
+  Volume();
+
+  // What is drawn from now on: a scene of mode volume. Keeps a reference; what was prepared for another is dropped.
+  void set_scene(const Scene& scene);
+
+  // Draws the lattice's pixels of the window, as a picture of their own; neither side more than largest_side(). What
+  // was found for the same view is used again: the cells are not projected and sorted anew when nothing but colours
+  // changes. Adds to `stats`; waits for OpenGL to finish. Throws CancelledError, UnavailableError (no memory, a lost
+  // context).
+  void draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window, const PixelLattice& lattice,
+            RenderStats& stats, Progress& progress);
+
+  int largest_side() const { return largest_side_; }
+  const VolumeStats& last() const { return last_; }
+  // What was drawn last: RGBA32F, premultiplied RGB and coverage, the picture's upper row first (at texture coordinate
+  // 0). The texture may be larger than the picture, which begins at (0, 0).
+  const Texture& texture() const { return color_; }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  Image read() const;
+
+ private:
+  // Everything that depends on where cells are seen.
+  struct View {
+    Camera camera;
+    PixelGrid grid;
+    ColorMap color_map;  // transparent cells are left out
+  };
+  // Front faces of consecutive cells of the order, on the card.
+  struct Slab {
+    Buffer vertices;
+    std::vector<GLint> first;
+    std::vector<GLsizei> count;
+  };
+
+  bool same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const;
+  void find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters, const Progress& progress);
+  void fill(Slab& slab, std::span<const Index> parts);
+  void resize(int columns, int rows);
+  void begin_pass(const Program& program) const;
+  void draw_slab(const Slab& slab) const;
+
+  Driver driver_;
+  int largest_side_ = 0;
+  int viewport_side_ = 0;
+  const Scene* scene_ = nullptr;
+  std::optional<View> view_;
+  std::unique_ptr<CellOrder> order_;
+  std::unique_ptr<ScreenMesh> mesh_;
+  PreintegrationTable table_;
+  std::vector<Index> parts_;  // in order
+  std::vector<Slab> slabs_;
+  bool slabs_kept_ = false;  // slabs_ hold all parts
+  Program perspective_;
+  Program parallel_;
+  VertexArray vertex_array_;
+  Framebuffer framebuffer_;
+  Texture color_;
+  Texture depth_;
+  int columns_ = 0;
+  int rows_ = 0;
+  VolumeStats last_;
+};
+
+}  // namespace atomesh::gl

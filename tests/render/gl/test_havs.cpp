@@ -1,0 +1,181 @@
+// The renderer "havs": the judge's pictures, windows and lattices, and what it does not draw.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "render/gl/context.h"
+#include "render/gl/volume.h"
+#include "render/renderer.h"
+#include "tests/render/fixtures.h"
+
+namespace atomesh {
+namespace {
+
+using namespace test;
+
+Subject subject_of(Projection projection, int width, int height) {
+  Subject subject = shaken_box(Mode::volume, projection, width, height);
+  subject.parameters.volume.alpha_length = 0.6;
+  subject.parameters.volume.color_map.entries = {{0.0, {0.1F, 0.2F, 0.8F, 0.0F}},
+                                                 {0.3, {0.2F, 0.9F, 0.4F, 0.5F}},
+                                                 {0.6, {0.9F, 0.7F, 0.1F, 0.1F}},
+                                                 {1.0, {0.9F, 0.1F, 0.1F, 1.0F}}};
+  return subject;
+}
+
+class Havs : public testing::TestWithParam<Projection> {};
+INSTANTIATE_TEST_SUITE_P(Both, Havs, testing::Values(Projection::parallel, Projection::perspective));
+
+TEST_P(Havs, DrawsWhatTheJudgeDraws) {
+  const Subject subject = subject_of(GetParam(), 160, 120);
+  const Drawn drawn = draw(find_renderer("havs"), subject.scene, subject.camera, subject.parameters);
+  const Drawn judged = draw(find_renderer("reference"), subject.scene, subject.camera, subject.parameters);
+  const ImageDifference difference = compare_images(drawn.image, judged.image);
+  EXPECT_LE(difference.max, 4.0 / 255.0);
+  EXPECT_GE(difference.psnr, 60.0);
+  const auto light = std::count_if(judged.image.pixels.begin(), judged.image.pixels.end(),
+                                   [](const Vec4f& pixel) { return pixel.a > 0.1F; });
+  EXPECT_GT(light, 2000);
+}
+
+TEST_P(Havs, WindowsAndLatticesAreThePictureToRounding) {
+  const Subject subject = subject_of(GetParam(), 101, 75);
+  const Renderer& havs = find_renderer("havs");
+  const Drawn whole = draw(havs, subject.scene, subject.camera, subject.parameters);
+  for (const PixelWindow& window :
+       {PixelWindow{0, 0, 101, 75}, PixelWindow{33, 5, 50, 64}, PixelWindow{50, 37, 1, 1}}) {
+    for (const PixelLattice& lattice : {PixelLattice{}, PixelLattice{2, 2, 1, 0}, PixelLattice{2, 8, 1, 5}}) {
+      RenderStats stats;
+      const auto frame = havs.prepare(subject.scene, subject.camera, subject.parameters, window, stats, no_progress());
+      Image image(window.width, window.height);
+      const Vec4f untouched(-1.0F);
+      std::fill(image.pixels.begin(), image.pixels.end(), untouched);
+      frame->draw(lattice, image, stats, {}, no_progress());
+      for (int row = 0; row < window.height; ++row) {
+        for (int column = 0; column < window.width; ++column) {
+          const int picture_column = window.left + column;
+          const int picture_row = window.top + row;
+          const bool drawn = picture_column % lattice.column_stride == lattice.column_phase &&
+                             picture_row % lattice.row_stride == lattice.row_phase;
+          const Vec4f expected = drawn ? whole.image.at(picture_column, picture_row) : untouched;
+          // A lattice has a grid of subpixels of its own.
+          const double tolerance = lattice.column_stride == 1 && lattice.row_stride == 1 ? 1e-5 : 0.02;
+          for (int k = 0; k < 4; ++k) {
+            ASSERT_NEAR(image.at(column, row)[k], expected[k], tolerance)
+                << "pixel " << column << ' ' << row << " of the window " << window.left << ' ' << window.top;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(Havs, DrawsFromInsideTheSample) {
+  Subject subject = subject_of(GetParam(), 96, 96);
+  subject.camera.eye = subject.scene.bounds.center() + 0.1 * subject.camera.right;
+  const Drawn drawn = draw(find_renderer("havs"), subject.scene, subject.camera, subject.parameters);
+  const Drawn judged = draw(find_renderer("reference"), subject.scene, subject.camera, subject.parameters);
+  const ImageDifference difference = compare_images(drawn.image, judged.image);
+  EXPECT_LE(difference.max, 4.0 / 255.0);
+  EXPECT_GE(difference.psnr, 55.0);
+}
+
+TEST(HavsRenderer, NamesWhoDrawsTheOtherModes) {
+  for (const Mode mode : all_modes) {
+    if (mode == Mode::volume) continue;
+    const Subject subject = shaken_box(mode, Projection::parallel, 20, 20);
+    try {
+      draw(find_renderer("havs"), subject.scene, subject.camera, subject.parameters);
+      FAIL() << mode_name(mode);
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("cpu"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(HavsRenderer, DrawsNothingOfAnEmptyScene) {
+  Subject subject = subject_of(Projection::perspective, 20, 20);
+  subject.scene.tetrahedra = {};
+  const Drawn drawn = draw(find_renderer("havs"), subject.scene, subject.camera, subject.parameters);
+  for (const Vec4f& pixel : drawn.image.pixels) EXPECT_EQ(pixel, Vec4f(0.0F));
+}
+
+TEST(HavsRenderer, CanBeCancelled) {
+  const Subject subject = subject_of(Projection::perspective, 64, 64);
+  Progress progress;
+  progress.request_cancel();
+  RenderStats stats;
+  EXPECT_THROW(find_renderer("havs").draw(subject.scene, subject.camera, subject.parameters, stats, {}, progress),
+               CancelledError);
+}
+
+// In a context that checks every call: draw() and read() throw what it finds.
+class DebugVolume : public testing::Test {
+ protected:
+  void draw(const Subject& subject) {
+    RenderStats stats;
+    volume.draw(subject.camera, subject.parameters, whole_picture(subject.camera), {}, stats, no_progress());
+  }
+
+  gl::HeadlessContext context{true};
+  gl::HeadlessContext::Current current{context};
+  gl::Volume volume;
+};
+
+TEST_F(DebugVolume, ViewsThatStayAreDrawnWithoutSorting) {
+  Subject subject = subject_of(Projection::perspective, 90, 70);
+  volume.set_scene(subject.scene);
+  draw(subject);
+  const Image first = volume.read();
+  draw(subject);
+  EXPECT_EQ(volume.last().project_ms, 0.0);
+  EXPECT_EQ(volume.last().order_ms, 0.0);
+  EXPECT_EQ(volume.last().faces_ms, 0.0);
+  EXPECT_EQ(compare_images(volume.read(), first).max, 0.0);
+
+  // Other colours, of other transparency.
+  subject.parameters.volume.color_map.entries[0].color.a = 0.4F;
+  draw(subject);
+  const Image recolored = volume.read();
+  EXPECT_GT(compare_images(recolored, first).max, 0.05);
+  volume.set_scene(subject.scene);
+  draw(subject);
+  EXPECT_EQ(compare_images(volume.read(), recolored).max, 0.0);
+
+  // A smaller picture in the same texture.
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, 40, 30);
+  draw(subject);
+  const Image small = volume.read();
+  EXPECT_EQ(small.width, 40);
+  const Drawn judged = test::draw(find_renderer("reference"), subject.scene, subject.camera, subject.parameters);
+  EXPECT_LE(compare_images(small, judged.image).max, 4.0 / 255.0);
+}
+
+TEST_F(DebugVolume, LeavesOpenGlAsItWas) {
+  const Subject subject = subject_of(Projection::perspective, 30, 30);
+  glViewport(3, 4, 5, 6);
+  glEnable(GL_CULL_FACE);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE, GL_DST_ALPHA, GL_ZERO);
+  glStencilFunc(GL_LESS, 3, 7);
+  volume.set_scene(subject.scene);
+  draw(subject);
+  volume.read();
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  EXPECT_EQ(viewport, (std::array<GLint, 4>{3, 4, 5, 6}));
+  EXPECT_EQ(glIsEnabled(GL_CULL_FACE), GL_TRUE);
+  EXPECT_EQ(glIsEnabled(GL_BLEND), GL_FALSE);
+  GLint value = 0;
+  glGetIntegerv(GL_BLEND_DST_RGB, &value);
+  EXPECT_EQ(value, GL_ONE);
+  glGetIntegerv(GL_STENCIL_FUNC, &value);
+  EXPECT_EQ(value, GL_LESS);
+  glGetIntegerv(GL_CURRENT_PROGRAM, &value);
+  EXPECT_EQ(value, 0);
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &value);
+  EXPECT_EQ(value, 0);
+}
+
+}  // namespace
+}  // namespace atomesh
