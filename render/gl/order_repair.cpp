@@ -116,6 +116,15 @@ void OrderRepair::reserve(std::size_t pixels, std::size_t nodes) {
   check_errors("taking memory for repairing the order of cells");
 }
 
+MarkedTiles OrderRepair::marked_tiles(const Part& window) const {
+  std::vector<std::uint8_t> pixels(window.pixels());
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, window.width, window.height, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels.data());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  return MarkedTiles(pixels, window.width, window.height, static_cast<std::uint8_t>(settings_.stencil_bits));
+}
+
 OrderRepair::Gathered OrderRepair::gather(const Part& part, const std::function<void()>& draw) {
   const bool keep = settings_.method == RepairMethod::keep;
   const std::size_t capacity = keep ? 0 : nodes_.bytes() / node_bytes;
@@ -130,6 +139,7 @@ OrderRepair::Gathered OrderRepair::gather(const Part& part, const std::function<
   repair_.bind_storage(repair_binding);
   glScissor(part.left, part.bottom, part.width, part.height);
   write_colors(false);
+  tiles_->look_at(part.left, part.bottom, part.width, part.height);
   draw();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return repair_.read<Gathered>(1).front();
@@ -177,6 +187,7 @@ void OrderRepair::repair(GLuint framebuffer, int width, int height, const std::f
     const std::size_t first_nodes = std::min<std::size_t>(most_nodes, marked * usual_length);
     keep ? reserve(pixels, 0) : reserve(window.pixels(), first_nodes);
 
+    tiles_ = marked_tiles(window);
     std::vector<Part> parts =
         split(window, keep ? ceil_quotient(window.pixels(), pixels) : ceil_quotient(marked, most_pixels));
     while (!parts.empty()) {

@@ -7,10 +7,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "render/gl/marked_tiles.h"
 #include "render/gl/objects.h"
 
 namespace atomesh::gl {
@@ -50,12 +52,14 @@ class OrderRepair {
   std::vector<std::string> defines() const;
 
   // `framebuffer`: the first pass's, width × height, a float colour buffer first, and stencil; the viewport stays as it
-  // is, and covers it. `draw` uses the program
-  // and draws the cells in the same order; it is not called where no pixel is marked, and once for each part of the
-  // window where lists need more memory than they may have. A pixel whose list alone needs more stays without its last
-  // fragments, and counts as wrong. Afterwards no depth, stencil or scissor test is on, nothing blends, and all is
-  // written. Adds to `stats`. Throws UnavailableError when there is not the memory.
+  // is, and covers it. `draw` uses the program and draws the cells in the same order, at least those that meet tiles();
+  // it is not called where no pixel is marked, and once for each part of the window where lists need more memory than
+  // they may have. A pixel whose list alone needs more stays without its last fragments, and counts as wrong.
+  // Afterwards no depth, stencil or scissor test is on, nothing blends, and all is written. Adds to `stats`. Throws
+  // UnavailableError when there is not the memory.
   void repair(GLuint framebuffer, int width, int height, const std::function<void()>& draw, RepairStats& stats);
+  // While `draw` runs: what it has to draw.
+  const MarkedTiles& tiles() const { return *tiles_; }
 
  private:
   struct Part {
@@ -75,6 +79,7 @@ class OrderRepair {
 
   std::uint64_t marked_pixels();
   void reserve(std::size_t pixels, std::size_t nodes);
+  MarkedTiles marked_tiles(const Part& window) const;
   Gathered gather(const Part& part, const std::function<void()>& draw);
   Gathered resolve();
   // Into that many parts, or as many as it has rows; a single row into parts of it.
@@ -83,6 +88,7 @@ class OrderRepair {
   RepairSettings settings_;
   std::size_t largest_storage_ = 0;  // bytes that a storage buffer may have
   Program resolve_;
+  std::optional<MarkedTiles> tiles_;
   VertexArray whole_window_;  // no attributes
   Program count_;
   Query marked_;

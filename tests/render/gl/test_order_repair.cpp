@@ -127,6 +127,7 @@ class Picture {
         depth_(Texture::make_2d(GL_DEPTH32F_STENCIL8, width, height)),
         framebuffer_(make_framebuffer()),
         array_(make_vertex_array()),
+        layers_(layers),
         blend_(vertex_shader(), "in vec4 layer; out vec4 light; void main() { light = layer; }") {
     std::vector<float> vertices;
     for (const Layer& l : layers) {
@@ -141,7 +142,6 @@ class Picture {
         }
       }
     }
-    count_ = static_cast<GLsizei>(6 * layers.size());
     buffer_.write(std::span<const float>(vertices));
     glBindVertexArray(array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.name());
@@ -177,8 +177,21 @@ class Picture {
   void draw(GLuint program) {
     glUseProgram(program);
     glBindVertexArray(array_.name());
-    glDrawArrays(GL_TRIANGLES, 0, count_);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * layers_.size()));
   }
+
+  // Those alone that meet the tiles.
+  void draw(GLuint program, const MarkedTiles& tiles) {
+    glUseProgram(program);
+    glBindVertexArray(array_.name());
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      const Layer& l = layers_[i];
+      if (!tiles.meets(l.left, l.right - 1, l.bottom, l.top - 1)) continue;
+      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * i), 6);
+      ++drawn_again_;
+    }
+  }
+  std::size_t drawn_again() const { return drawn_again_; }
 
   RepairStats repair(OrderRepair& order_repair) {
     std::string source;
@@ -192,7 +205,7 @@ class Picture {
     const RawProgram program(vertex_shader(), source);
     RepairStats stats;
     order_repair.repair(
-        framebuffer_.name(), width, height, [&] { draw(program.name); }, stats);
+        framebuffer_.name(), width, height, [&] { draw(program.name, order_repair.tiles()); }, stats);
     check_errors("repairing");
     return stats;
   }
@@ -215,7 +228,8 @@ class Picture {
   Framebuffer framebuffer_;
   VertexArray array_;
   Buffer buffer_;
-  GLsizei count_ = 0;
+  std::vector<Layer> layers_;
+  std::size_t drawn_again_ = 0;
   RawProgram blend_;
 };
 
@@ -332,6 +346,52 @@ TEST_F(OrderRepairTest, TakesPartsWhereMemoryIsShort) {
   }
   compare(layers, {.method = RepairMethod::replay, .k = 4, .memory = 1 << 17});
   EXPECT_GT(compare(layers, {.method = RepairMethod::keep, .k = 4, .memory = 1 << 17}).draws, 1);
+}
+
+TEST_F(OrderRepairTest, DrawsAgainWhatMeetsMarkedTiles) {
+  std::vector<Layer> layers;
+  for (int column = 0; column < 140; column += 10) {
+    for (const float depth : {0.3F, 0.6F}) {
+      layers.push_back({column, column + 9, 10, 20, column == 50 ? 1.0F - depth : depth, Vec4f(0.2F)});
+    }
+  }
+  compare(layers, {});
+  Picture picture(layers);
+  picture.draw_blended();
+  OrderRepair order_repair(RepairSettings{});
+  EXPECT_EQ(picture.repair(order_repair).pixels, 90U);
+  EXPECT_LE(picture.drawn_again(), 6U);
+  EXPECT_GE(picture.drawn_again(), 2U);
+}
+
+TEST(MarkedTiles, AreMetByWhatTouchesThem) {
+  constexpr int columns = 37;
+  constexpr int rows = 21;
+  std::mt19937 random(5);
+  std::vector<std::uint8_t> pixels(columns * rows);
+  for (const std::size_t place : {3UL, 37UL * 9 + 20, 37UL * 20 + 36}) pixels[place] = 2;
+  pixels[37 * 4 + 30] = 1;  // another bit
+  MarkedTiles tiles(pixels, columns, rows, 2);
+  for (int n = 0; n < 2000; ++n) {
+    const auto edge = [&](int size) { return static_cast<int>(random() % static_cast<unsigned>(size + 20)) - 10; };
+    const auto [left, right] = std::minmax(edge(columns), edge(columns));
+    const auto [bottom, top] = std::minmax(edge(rows), edge(rows));
+    if (n == 1000) tiles.look_at(8, 0, 16, 21);
+    const int first = n < 1000 ? 0 : 8;
+    const int last = n < 1000 ? columns - 1 : 23;
+    bool expected = false;
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i) {
+        if (pixels[static_cast<std::size_t>(j * columns + i)] != 2) continue;
+        const auto touches = [](int low, int high, int pixel) { return low <= (pixel | 7) && high >= (pixel & ~7); };
+        expected = expected || (touches(std::max(left, first), std::min(right, last), i) &&
+                                touches(std::max(bottom, 0), std::min(top, rows - 1), j));
+      }
+    }
+    const bool empty = std::max(left, first) > std::min(right, last) || std::max(bottom, 0) > std::min(top, rows - 1);
+    EXPECT_EQ(tiles.meets(left, right, bottom, top), expected && !empty)
+        << left << " " << right << " " << bottom << " " << top;
+  }
 }
 
 // A list that is longer than was guessed is made once more in more memory.

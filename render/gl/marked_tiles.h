@@ -1,0 +1,47 @@
+// Where pixels are marked, in tiles: so that little is drawn again where few are.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace atomesh::gl {
+
+class MarkedTiles {
+ public:
+  // Pixels of a window, rows of `width` from the bottom (OpenGL's row 0); marked where any of `bits` is set.
+  MarkedTiles(std::span<const std::uint8_t> pixels, int width, int height, std::uint8_t bits);
+
+  // From now on only what lies in this rectangle counts.
+  void look_at(int left, int bottom, int width, int height) {
+    left_ = left;
+    bottom_ = bottom;
+    right_ = left + width - 1;
+    top_ = bottom + height - 1;
+  }
+
+  // Whether a tile that these pixels (both ends included, may reach beyond the window) touch has a marked one.
+  bool meets(int left, int right, int bottom, int top) const {
+    left = std::max(left, left_) >> shift;
+    right = std::min(right, right_) >> shift;
+    bottom = std::max(bottom, bottom_) >> shift;
+    top = std::min(top, top_) >> shift;
+    if (left > right || bottom > top) return false;
+    return sum(right + 1, top + 1) + sum(left, bottom) != sum(left, top + 1) + sum(right + 1, bottom);
+  }
+
+ private:
+  static constexpr int shift = 3;  // tiles of 8 × 8 pixels
+  // Marked tiles left of and below a tile's corner.
+  std::uint32_t sum(int column, int row) const {
+    return sums_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_ + 1) +
+                 static_cast<std::size_t>(column)];
+  }
+
+  int columns_;
+  int left_, bottom_, right_, top_;
+  std::vector<std::uint32_t> sums_;
+};
+
+}  // namespace atomesh::gl
