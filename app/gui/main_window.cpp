@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <QAction>
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QFileInfo>
@@ -187,6 +188,12 @@ void MainWindow::next_shading() {
 
 void MainWindow::toggle_full_screen() {
   setWindowState(windowState() ^ Qt::WindowFullScreen);
+}
+
+// Whoever asked for it, a desktop's own keys among them.
+void MainWindow::changeEvent(QEvent* event) {
+  QMainWindow::changeEvent(event);
+  if (event->type() == QEvent::WindowStateChange) full_screen_->setChecked(isFullScreen());
 }
 
 void MainWindow::change_view(const QString& name, const std::function<void(Parameters&)>& change) {

@@ -57,6 +57,7 @@ class MainWindow : public QMainWindow {
   void reset_orientation();
 
  protected:
+  void changeEvent(QEvent* event) override;
   void closeEvent(QCloseEvent* event) override;
 
  private:

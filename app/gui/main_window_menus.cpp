@@ -124,6 +124,7 @@ void MainWindow::build_mode_menu() {
   shadings_ = new QActionGroup(this);
   for (const Shading shading : {Shading::flat, Shading::smooth}) {
     QAction* action = menu->addAction(shading == Shading::flat ? tr("Flat shading") : tr("Smooth shading"));
+    action->setObjectName(shading == Shading::flat ? "shading_flat" : "shading_smooth");
     action->setCheckable(true);
     action->setData(static_cast<int>(shading));
     shadings_->addAction(action);
@@ -177,6 +178,7 @@ void MainWindow::build_view_menu() {
   projections_ = new QActionGroup(this);
   for (const Projection projection : {Projection::perspective, Projection::parallel}) {
     QAction* action = menu->addAction(projection == Projection::perspective ? tr("Perspective") : tr("Parallel"));
+    action->setObjectName(projection == Projection::perspective ? "projection_perspective" : "projection_parallel");
     action->setCheckable(true);
     action->setData(static_cast<int>(projection));
     projections_->addAction(action);
@@ -203,7 +205,7 @@ void MainWindow::build_view_options(QMenu& menu) {
     bool ViewOptions::*value;
   };
   const std::array<Option, 5> options{{{"legend", tr("&Legend"), &ViewOptions::legend},
-                                       {"scale_bar", tr("S&cale bar"), &ViewOptions::scale_bar},
+                                       {"scale_bar", tr("Sc&ale bar"), &ViewOptions::scale_bar},
                                        {"tripod", tr("&Tripod of axes"), &ViewOptions::tripod},
                                        {"cut_handles", tr("&Handles of cut planes"), &ViewOptions::cut_handles},
                                        {"upright", tr("&Keep z upright when turning"), &ViewOptions::upright}}};
@@ -244,7 +246,7 @@ void MainWindow::build_window_menu() {
   docks_menu_ = menuBar()->addMenu(tr("&Window"));
   full_screen_ = docks_menu_->addAction(tr("&Full screen"), this, &MainWindow::toggle_full_screen);
   full_screen_->setObjectName("action_full_screen");
-  full_screen_->setShortcut(Qt::Key_F);
+  full_screen_->setShortcuts({QKeySequence(Qt::Key_F), QKeySequence(Qt::Key_F11)});
   full_screen_->setCheckable(true);
   docks_menu_->addSeparator();
   QMenu* theme = docks_menu_->addMenu(tr("&Theme"));

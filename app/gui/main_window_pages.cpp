@@ -1,4 +1,5 @@
 // Pages and docks of the window, and what they ask of each other.
+#include <QAction>
 #include <QDockWidget>
 #include <QScrollArea>
 #include <QStackedWidget>
@@ -39,6 +40,7 @@ void MainWindow::build_pages() {
 QDockWidget* MainWindow::add_dock(QWidget* content, const QString& title, Qt::DockWidgetArea area) {
   auto* dock = new QDockWidget(title, this);
   dock->setObjectName(content->objectName() + "_dock");
+  dock->toggleViewAction()->setObjectName("show_" + content->objectName());
   dock->setWidget(content);
   addDockWidget(area, dock);
   docks_.push_back(dock);
