@@ -59,6 +59,8 @@ class WindowActions : public test::WindowFixture {
     window->show_view();
     workspace().change(Parameters(), "As at first");
     workspace().set_view_options({});
+    window->activateWindow();
+    ASSERT_TRUE(wait_for([&] { return window->isActiveWindow(); }));
   }
 
   // Entries without what has entries of its own; "Open recent" is filled when it opens.
