@@ -78,17 +78,18 @@ void draw_histogram(QPainter& painter, const QRectF& area, const ScalarHistogram
   const std::uint64_t largest = histogram.largest();
   if (bins == 0 || largest == 0) return;
   const double step = area.width() / static_cast<double>(bins);
+  // Crystals have few different values: a bar by itself, or at the frame, is wide enough to be seen.
+  const double width = std::max(step, 3.0);
   QPainterPath bars;
-  bars.moveTo(area.bottomLeft());
+  bars.setFillRule(Qt::WindingFill);
   for (std::size_t b = 0; b < bins; ++b) {
-    double height = bar_height(histogram.counts[b], largest, logarithmic) * area.height();
-    if (histogram.counts[b] > 0) height = std::max(height, 1.0);  // one atom among a million is seen too
-    const double left = area.left() + static_cast<double>(b) * step;
-    bars.lineTo(left, area.bottom() - height);
-    bars.lineTo(left + step, area.bottom() - height);
+    if (histogram.counts[b] == 0) continue;
+    // One atom among a million is seen too.
+    const double height = std::max(bar_height(histogram.counts[b], largest, logarithmic) * area.height(), 1.0);
+    const double middle = area.left() + (static_cast<double>(b) + 0.5) * step;
+    const double left = std::max(area.left(), std::min(middle - 0.5 * width, area.right() - width));
+    bars.addRect(left, area.bottom() - height, width, height);
   }
-  bars.lineTo(area.bottomRight());
-  bars.closeSubpath();
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing, step < 4.0);
   painter.setPen(Qt::NoPen);

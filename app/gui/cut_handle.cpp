@@ -25,8 +25,11 @@ const Vec4f hot_color(1.0F, 0.85F, 0.1F, 1.0F);
 
 // Rounded to a ten-thousandth of the power of ten below `size`: people read the number.
 double rounded(double value, double size) {
-  const double step = 1e-4 * std::pow(10.0, std::floor(std::log10(size)));
-  return std::isfinite(step) && step > 0.0 ? std::round(value / step) * step : value;
+  const double digits = 4.0 - std::floor(std::log10(size));
+  if (!std::isfinite(digits)) return value;
+  // By a whole number either way, so that what comes is the number that its digits say.
+  const double scale = std::pow(10.0, std::abs(digits));
+  return digits >= 0.0 ? std::round(value * scale) / scale : std::round(value / scale) * scale;
 }
 
 // The part of a convex polygon where dot(normal, p) <= distance (Sutherland and Hodgman).
@@ -182,8 +185,9 @@ CutPlane moved_plane(const CutPlane& plane, const CutHandle& handle, const Bound
   // A plane that was out of reach already is not pulled back by a drag that goes further.
   const double distance =
       std::clamp(wanted, std::min(least - margin, unit.distance), std::max(most + margin, unit.distance));
+  const double length = glm::length(plane.normal);
   CutPlane moved = plane;
-  moved.distance = rounded(distance, bounds.diagonal()) * glm::length(plane.normal);
+  moved.distance = rounded(distance * length, bounds.diagonal() * length);
   return moved;
 }
 
@@ -199,7 +203,7 @@ CutPlane tilted_plane(const CutPlane& plane, const CutHandle& handle, const Boun
   CutPlane tilted = plane;
   const double length = glm::length(plane.normal);
   tilted.normal = std::abs(length - 1.0) < 1e-3 ? normal : length * normal;
-  tilted.distance = rounded(glm::dot(tilted.normal, handle.foot) / length, bounds.diagonal()) * length;
+  tilted.distance = rounded(glm::dot(tilted.normal, handle.foot), bounds.diagonal() * length);
   return tilted;
 }
 

@@ -1,5 +1,6 @@
 #include "app/gui/defect_dock.h"
 
+#include <QAbstractItemView>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFileDialog>
@@ -12,6 +13,7 @@
 #include <QStackedWidget>
 #include <QTableView>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "app/gui/color_map_painting.h"
 #include "app/gui/navigation.h"
@@ -43,13 +45,14 @@ void DefectDock::build() {
   kinds_->setObjectName("defect_kinds");
   kinds_->setToolTip(tr("Only clusters of this kind"));
   kinds_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  kinds_->view()->setTextElideMode(Qt::ElideNone);
   kinds_label->setBuddy(kinds_);
   fill_kinds();
   connect(kinds_, &QComboBox::activated, this, [this](int row) {
     const QVariant kind = kinds_->itemData(row);
     list_.set_kind(kind.isValid() ? std::optional(static_cast<DefectKind>(kind.toInt())) : std::nullopt);
   });
-  flying_ = new QCheckBox(tr("&Fly to the selected"), this);
+  flying_ = new QCheckBox(tr("&Fly there"), this);
   flying_->setObjectName("defect_flying");
   flying_->setChecked(true);
   flying_->setToolTip(tr("Bring the selected cluster to the middle of the view; else it is only marked"));
@@ -63,6 +66,7 @@ void DefectDock::build() {
   table_->setAlternatingRowColors(true);
   table_->setTabKeyNavigation(false);
   table_->setWordWrap(false);
+  table_->verticalHeader()->hide();
   table_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() * 3 / 2);
   table_->verticalHeader()->setSectionResizeMode(QHeaderView::Fixed);
   QHeaderView* header = table_->horizontalHeader();
@@ -70,12 +74,11 @@ void DefectDock::build() {
   header->setSortIndicatorClearable(true);
   header->setHighlightSections(false);
   table_->setSortingEnabled(true);
-  table_->setColumnWidth(DefectList::kind, fontMetrics().averageCharWidth() * 16);
-  for (int c = DefectList::atoms; c < DefectList::columns; ++c) {
-    const bool place = c == DefectList::x || c == DefectList::y || c == DefectList::z;
-    const QString widest = place ? QStringLiteral("−1234.567") : list_.headerData(c, Qt::Horizontal).toString();
-    table_->setColumnWidth(c, fontMetrics().horizontalAdvance(widest) + fontMetrics().averageCharWidth() * 4);
-  }
+  // Only a column that is sorted by needs room for the arrow.
+  connect(header, &QHeaderView::sortIndicatorChanged, this, [this, header](int column) {
+    if (column >= 0)
+      header->resizeSection(column, std::max(header->sectionSize(column), header->sectionSizeHint(column)));
+  });
   connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& current) {
     if (current.isValid()) fly(current.row());
   });
@@ -137,6 +140,15 @@ void DefectDock::show_state() {
   pages_->setCurrentWidget(message.isEmpty() ? static_cast<QWidget*>(table_) : message_);
   summary_->setText(list_.summary());
   export_->setEnabled(list_.rowCount() > 0);
+  // As narrow as the first rows of a sample allow; then the columns are the user's.
+  if (list_.state() != DefectList::State::ready) fitted_ = false;
+  if (!fitted_ && list_.rowCount() > 0) {
+    QHeaderView* header = table_->horizontalHeader();
+    header->setSortIndicatorShown(header->sortIndicatorSection() >= 0);
+    table_->resizeColumnsToContents();
+    header->setSortIndicatorShown(true);
+    fitted_ = true;
+  }
   kinds_->setEnabled(list_.count() > 0);
 }
 

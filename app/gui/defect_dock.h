@@ -51,6 +51,7 @@ class DefectDock : public QWidget {
   QLabel* summary_ = nullptr;
   QPushButton* export_ = nullptr;
   bool marked_ = false;  // by this
+  bool fitted_ = false;  // the columns, to the sample's clusters
 };
 
 }  // namespace atomesh::gui

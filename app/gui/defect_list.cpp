@@ -43,11 +43,10 @@ QString number_text(const DefectCluster& cluster, int column) {
   const double number = number_of(cluster, column);
   switch (column) {
     case DefectList::radius:
-      return QString::number(number, 'f', 2);
     case DefectList::x:
     case DefectList::y:
     case DefectList::z:
-      return QString::number(number, 'f', 3);
+      return QString::number(number, 'f', 2);
     case DefectList::peak:
       return QString::number(number, 'g', 4);
     default:
@@ -248,8 +247,11 @@ QVariant DefectList::data(const QModelIndex& index, int role) const {
       return QVariant::fromValue<int>(Qt::AlignVCenter | (column == kind ? Qt::AlignLeft : Qt::AlignRight));
     case Qt::ToolTipRole:
       return tr("%1 at (%2, %3, %4) Å, radius %5 Å: %6 atoms, largest defect value %7")
-          .arg(defect_kind_label(one.kind), number_text(one, x), number_text(one, y), number_text(one, z),
-               number_text(one, radius), number_text(one, atoms), number_text(one, peak));
+          .arg(defect_kind_label(one.kind))
+          .arg(one.centre.x, 0, 'f', 3)
+          .arg(one.centre.y, 0, 'f', 3)
+          .arg(one.centre.z, 0, 'f', 3)
+          .arg(number_text(one, radius), number_text(one, atoms), number_text(one, peak));
     default:
       return {};
   }
@@ -259,22 +261,22 @@ QVariant DefectList::headerData(int section, Qt::Orientation orientation, int ro
   if (orientation == Qt::Vertical) return role == Qt::DisplayRole ? QVariant(section + 1) : QVariant();
   if (section < 0 || section >= columns) return {};
   if (role == Qt::DisplayRole) {
-    const std::array names{tr("Kind"),      tr("Atoms"), tr("Vacancies"), tr("Extra"), tr("Substituted"),
-                           tr("Radius, Å"), tr("x, Å"),  tr("y, Å"),      tr("z, Å"),  tr("Peak")};
+    const std::array names{tr("Kind"), tr("Atoms"),     tr("x, Å"),  tr("y, Å"),        tr("z, Å"),
+                           tr("Peak"), tr("Vacancies"), tr("Extra"), tr("Substituted"), tr("Radius, Å")};
     return names[static_cast<std::size_t>(section)];
   }
   if (role == Qt::ToolTipRole) {
     const std::array tips{tr("By the sites in it: vacancies, extra atoms, substitutions (an extra atom on a vacant "
                              "site) or, mixed, both; positional without any"),
                           tr("Atoms with a defect value"),
+                          tr("Of the middle of the cluster"),
+                          tr("Of the middle of the cluster"),
+                          tr("Of the middle of the cluster"),
+                          tr("Largest single defect value of its atoms"),
                           tr("Sites of the crystal without an atom of their species"),
                           tr("Atoms on no site of their species"),
                           tr("Extra atoms on vacant sites"),
-                          tr("Of the sphere that holds the cluster"),
-                          tr("Of the middle of the cluster"),
-                          tr("Of the middle of the cluster"),
-                          tr("Of the middle of the cluster"),
-                          tr("Largest single defect value of its atoms")};
+                          tr("Of the sphere that holds the cluster")};
     return tips[static_cast<std::size_t>(section)];
   }
   return {};

@@ -28,7 +28,7 @@ class DefectList : public QAbstractTableModel {
   Q_OBJECT
 
  public:
-  enum Column { kind, atoms, vacancies, extras, substitutions, radius, x, y, z, peak, columns };
+  enum Column { kind, atoms, x, y, z, peak, vacancies, extras, substitutions, radius, columns };
   enum class State { nothing_open, no_atoms, no_defect_values, working, failed, ready };
 
   explicit DefectList(Workspace& workspace, QObject* parent = nullptr);

@@ -130,10 +130,10 @@ HelpWindow::HelpWindow(QWidget* parent)
   splitter->addWidget(right);
   splitter->setStretchFactor(1, 1);
   const int letter = fontMetrics().averageCharWidth();
-  splitter->setSizes({letter * 34, letter * 100});
+  splitter->setSizes({letter * 44, letter * 100});
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(splitter);
-  resize(letter * 140, fontMetrics().height() * 40);
+  resize(letter * 148, fontMetrics().height() * 40);
 
   connect(back, &QToolButton::clicked, browser_, &QTextBrowser::backward);
   connect(forward, &QToolButton::clicked, browser_, &QTextBrowser::forward);

@@ -91,6 +91,7 @@ MainWindow::~MainWindow() {
 void MainWindow::build_status_line() {
   hint_ = new QLabel(this);
   hint_->setObjectName("hint");
+  hint_->setContentsMargins(fontMetrics().averageCharWidth(), 0, 0, 0);
   progress_ = new QProgressBar(this);
   progress_->setObjectName("progress");
   progress_->setRange(0, 1000);

@@ -87,6 +87,7 @@ class MainWindow : public QMainWindow {
   void complain(const QString& message);
   void change_view(const QString& name, const std::function<void(Parameters&)>& change);
   void fill_recent_menu();
+  QString folder() const;  // of what is open, where dialogs for files begin
   void show_help(const QString& topic);
   void show_docks(bool on);
 

@@ -21,6 +21,11 @@ void MainWindow::start(const QString& path, const QString& crf) {
   opening_->take(path, crf);
 }
 
+QString MainWindow::folder() const {
+  const auto& document = workspace_.document();
+  return document ? QFileInfo(QString::fromStdString(document->path)).absolutePath() : QString();
+}
+
 void MainWindow::show_loader() {
   opening_->show_loader();
 }

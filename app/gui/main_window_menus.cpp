@@ -8,6 +8,7 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QStackedWidget>
 #include <array>
 
 #include "app/gui/crystal_view_dialog.h"
@@ -39,7 +40,7 @@ void MainWindow::build_file_menu() {
   open->setShortcut(QKeySequence::Open);
   connect(open, &QAction::triggered, this, [this] {
     const QString path = QFileDialog::getOpenFileName(
-        this, tr("Open"), {},
+        this, tr("Open"), folder(),
         tr("All that can be opened (*.crb *.crt *.dat *.xyz *.extxyz *.lmp *.data *.dump *.lammpstrj *.vtu *.vtk *.bin "
            "*.node *.ele *.png);;Materials (*.crb *.crt);;All files (*)"));
     if (!path.isEmpty()) this->open(path);
@@ -53,12 +54,12 @@ void MainWindow::build_file_menu() {
   loader->setShortcut(QKeySequence::New);
   menu->addSeparator();
   QAction* load = menu->addAction(tr("Load &parameters…"), this, [this] {
-    const QString path = QFileDialog::getOpenFileName(this, tr("Load parameters"), {}, tr("Parameters (*.crf)"));
+    const QString path = QFileDialog::getOpenFileName(this, tr("Load parameters"), folder(), tr("Parameters (*.crf)"));
     if (!path.isEmpty()) load_parameters(path);
   });
   load->setObjectName("action_load_parameters");
   QAction* save = menu->addAction(tr("Sa&ve parameters…"), this, [this] {
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save parameters"), {}, tr("Parameters (*.crf)"));
+    const QString path = QFileDialog::getSaveFileName(this, tr("Save parameters"), folder(), tr("Parameters (*.crf)"));
     if (path.isEmpty()) return;
     try {
       save_parameter_file(workspace_, parameter_file_path(path, workspace_.document()));
@@ -285,7 +286,7 @@ void MainWindow::build_help_menu() {
   about->setObjectName("action_about");
 }
 
-// The menus' keys are theirs: what in a dock would answer to the same is found by Tab.
+// The menus' keys are theirs: what in a dock or page would answer to the same is found by Tab.
 void MainWindow::keep_menu_keys() {
   QString taken;
   for (const QAction* menu : menuBar()->actions()) {
@@ -296,11 +297,13 @@ void MainWindow::keep_menu_keys() {
     const QKeySequence key = QKeySequence::mnemonic(text);
     return !key.isEmpty() && taken.contains(QChar(key[0].key())) ? QString(text).remove(QChar('&')) : text;
   };
-  for (const QDockWidget* dock : docks_) {
-    for (QAbstractButton* button : dock->findChildren<QAbstractButton*>()) {
+  std::vector<const QWidget*> all(docks_.begin(), docks_.end());
+  all.push_back(pages_);
+  for (const QWidget* one : all) {
+    for (QAbstractButton* button : one->findChildren<QAbstractButton*>()) {
       if (const QString text = without(button->text()); text != button->text()) button->setText(text);
     }
-    for (QLabel* label : dock->findChildren<QLabel*>()) {
+    for (QLabel* label : one->findChildren<QLabel*>()) {
       if (const QString text = without(label->text()); label->buddy() != nullptr && text != label->text()) {
         label->setText(text);
       }

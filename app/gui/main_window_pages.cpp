@@ -57,7 +57,7 @@ void MainWindow::build_docks() {
   build_bottom_docks();
   // Until the user's own layout is known: columns of text on either side, the rest for the view.
   const int em = fontMetrics().averageCharWidth();
-  resizeDocks({docks_.front(), rendering_dock_}, {44 * em, 72 * em}, Qt::Horizontal);
+  resizeDocks({docks_.front(), rendering_dock_}, {54 * em, 73 * em}, Qt::Horizontal);
 }
 
 void MainWindow::build_left_docks() {
@@ -94,6 +94,12 @@ void MainWindow::build_right_docks() {
   tabifyDockWidget(display_dock, rendering_dock_);
   tabifyDockWidget(rendering_dock_, map_dock);
   rendering_dock_->raise();
+  // Never so narrow that their tabs could not be read; a tab is its title and some room.
+  int tabs = 0;
+  for (const QDockWidget* dock : {display_dock, rendering_dock_, map_dock}) {
+    tabs += fontMetrics().horizontalAdvance(dock->windowTitle()) + 4 * fontMetrics().averageCharWidth();
+  }
+  rendering_dock_->setMinimumWidth(tabs);
 }
 
 void MainWindow::build_bottom_docks() {

@@ -84,7 +84,7 @@ Rows cell_rows(const UnitCell& cell) {
 Rows defect_rows(const Defects& defects) {
   std::size_t defective = 0;
   for (std::size_t atom = 0; atom < defects.positional.size(); ++atom) defective += defects.defective(atom) ? 1 : 0;
-  return {{"Atoms with a defect", grouped(defective)},
+  return {{"Defective atoms", grouped(defective)},
           {"Vacancies", grouped(defects.vacancies.size())},
           {"Extra atoms", grouped(defects.extras.size())},
           {"Substitutions", grouped(defects.substitutions.size())}};

@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QHeaderView>
+#include <QKeyEvent>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
@@ -20,6 +21,7 @@ MaterialPanel::MaterialPanel(Workspace& workspace, QWidget* parent) : QWidget(pa
   tree_->setColumnCount(2);
   tree_->setHeaderHidden(true);
   tree_->setAlternatingRowColors(true);
+  tree_->setIndentation(fontMetrics().averageCharWidth() * 2);
   tree_->setUniformRowHeights(true);
   tree_->header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
   tree_->setAccessibleName(tr("What is open"));
@@ -28,11 +30,21 @@ MaterialPanel::MaterialPanel(Workspace& workspace, QWidget* parent) : QWidget(pa
   copy->setShortcutContext(Qt::WidgetShortcut);
   connect(copy, &QAction::triggered, this, &MaterialPanel::copy);
   tree_->addAction(copy);
+  tree_->installEventFilter(this);
   tree_->setContextMenuPolicy(Qt::ActionsContextMenu);
   layout->addWidget(tree_);
   connect(&workspace_, &Workspace::document_changed, this, &MaterialPanel::refresh);
   connect(&workspace_, &Workspace::parts_changed, this, &MaterialPanel::refresh);
   refresh();
+}
+
+// The window's own Copy would be as much meant by the key as the tree's.
+bool MaterialPanel::eventFilter(QObject* object, QEvent* event) {
+  if (event->type() != QEvent::ShortcutOverride && event->type() != QEvent::KeyPress) return false;
+  if (object != tree_ || !static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy)) return false;
+  if (event->type() == QEvent::KeyPress) copy();
+  event->accept();
+  return true;
 }
 
 void MaterialPanel::refresh() {

@@ -15,6 +15,9 @@ class MaterialPanel : public QWidget {
  public:
   explicit MaterialPanel(Workspace& workspace, QWidget* parent = nullptr);
 
+ protected:
+  bool eventFilter(QObject* object, QEvent* event) override;
+
  private:
   void refresh();
   void copy();

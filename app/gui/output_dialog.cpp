@@ -4,6 +4,7 @@
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
@@ -12,6 +13,8 @@
 #include <QPushButton>
 #include <QSettings>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <vector>
 
 #include "app/gui/theme.h"
 #include "core/error.h"
@@ -27,15 +30,15 @@ OutputDialog::OutputDialog(Workspace& workspace, const QString& name, const QStr
   content_->setContentsMargins(0, 0, 0, 0);
   all->addWidget(inputs_);
   auto* row = new QHBoxLayout;
-  auto* label = new QLabel(tr("&File"), this);
+  file_label_ = new QLabel(tr("&File"), this);
   file_ = new QLineEdit(this);
   file_->setObjectName(name + "_file");
-  file_->setMinimumWidth(fontMetrics().averageCharWidth() * 45);
-  label->setBuddy(file_);
+  file_->setMinimumWidth(fontMetrics().averageCharWidth() * 38);
+  file_label_->setBuddy(file_);
   auto* choose = new QPushButton(tr("C&hoose…"), this);
   choose->setObjectName(name + "_choose");
   choose->setAutoDefault(false);
-  row->addWidget(label);
+  row->addWidget(file_label_);
   row->addWidget(file_, 1);
   row->addWidget(choose);
   content_->addLayout(row);
@@ -48,7 +51,7 @@ OutputDialog::OutputDialog(Workspace& workspace, const QString& name, const QStr
   progress_->setRange(0, 1000);
   progress_->setTextVisible(true);
   auto* buttons = new QDialogButtonBox(this);
-  save_ = buttons->addButton(tr("&Save"), QDialogButtonBox::AcceptRole);
+  save_ = buttons->addButton(QDialogButtonBox::Save);
   save_->setObjectName(name + "_save");
   save_->setDefault(true);
   cancel_ = buttons->addButton(QDialogButtonBox::Cancel);
@@ -61,19 +64,53 @@ OutputDialog::OutputDialog(Workspace& workspace, const QString& name, const QStr
   connect(file_, &QLineEdit::textChanged, this, &OutputDialog::check);
   connect(save_, &QPushButton::clicked, this, &OutputDialog::save);
   connect(cancel_, &QPushButton::clicked, this, &OutputDialog::reject);
+  QSizePolicy keeps_its_place = progress_->sizePolicy();
+  keeps_its_place.setRetainSizeWhenHidden(true);
+  progress_->setSizePolicy(keeps_its_place);
   progress_->hide();
 }
 
 OutputDialog::~OutputDialog() = default;
 
 void OutputDialog::finish_building() {
+  propose_path();
+  align_labels();
+  connect(&workspace_, &Workspace::shown_changed, this, &OutputDialog::check);
+  connect(&workspace_, &Workspace::document_changed, this, &OutputDialog::propose_path);
+}
+
+void OutputDialog::propose_path() {
+  if (working()) return;
   const auto& document = workspace_.document();
   const QFileInfo sample(document ? QString::fromStdString(document->path) : QString("picture"));
   const QString folder = QSettings().value("output/folder").toString();
   const QDir dir(folder.isEmpty() || !QDir(folder).exists() ? sample.absolutePath() : folder);
-  set_path(dir.filePath(sample.completeBaseName() + ending_));
-  connect(&workspace_, &Workspace::shown_changed, this, &OutputDialog::check);
-  connect(&workspace_, &Workspace::document_changed, this, &OutputDialog::check);
+  const QString ending = QFileInfo(path()).suffix();
+  set_path(dir.filePath(sample.completeBaseName() + (ending.isEmpty() ? ending_ : "." + ending)));
+}
+
+// The fields of all the forms begin at one line.
+void OutputDialog::align_labels() {
+  std::vector<QWidget*> labels{file_label_};
+  for (const QFormLayout* form : findChildren<QFormLayout*>()) {
+    for (int row = 0; row < form->rowCount(); ++row) {
+      const QLayoutItem* const label = form->itemAt(row, QFormLayout::LabelRole);
+      if (label != nullptr && label->widget() != nullptr) labels.push_back(label->widget());
+    }
+  }
+  int widest = 0;
+  for (const QWidget* label : labels) widest = std::max(widest, label->sizeHint().width());
+  for (QWidget* label : labels) label->setMinimumWidth(widest);
+}
+
+// The name without folder and ending is what is most often typed anew.
+void OutputDialog::showEvent(QShowEvent* event) {
+  QDialog::showEvent(event);
+  check();  // also the colors of what it says go by the theme
+  file_->setFocus();
+  const QFileInfo info(file_->text());
+  file_->setSelection(static_cast<int>(file_->text().size() - info.fileName().size()),
+                      static_cast<int>(info.completeBaseName().size()));
 }
 
 QString OutputDialog::path() const {

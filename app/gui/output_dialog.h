@@ -38,6 +38,7 @@ class OutputDialog : public QDialog {
   // What is between the file's name and the buttons; before the first finish_building().
   QVBoxLayout& content() { return *content_; }
   void finish_building();
+  void showEvent(QShowEvent* event) override;
   // Says in the dialog what will be made or why it cannot be; the button goes by it.
   void check();
 
@@ -54,11 +55,14 @@ class OutputDialog : public QDialog {
 
  private:
   void browse();
+  void propose_path();  // named like what is open, in the folder of the last
+  void align_labels();
   void start();
   void show_working(bool on);
   void say(const QString& text, bool wrong);
 
   QVBoxLayout* content_ = nullptr;
+  QLabel* file_label_ = nullptr;
   QLineEdit* file_ = nullptr;
   QLabel* says_ = nullptr;
   QProgressBar* progress_ = nullptr;

@@ -126,9 +126,8 @@ void PickPanel::show_picks() {
     auto* item = new QTreeWidgetItem(facts_, cells);
     for (int c = 0; c < cells.size(); ++c) item->setToolTip(c, cells[c]);
   }
-  facts_->resizeColumnToContents(0);
+  for (int column = 0; column < facts_->columnCount(); ++column) facts_->resizeColumnToContents(column);
   if (picks.size() > 1) {
-    facts_->resizeColumnToContents(1);
     distance_->setText(text_of(distance_text(distance_between(picks[0], picks[1], material), material)));
   }
   distance_->setVisible(picks.size() > 1);

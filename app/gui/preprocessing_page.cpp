@@ -71,7 +71,9 @@ PreprocessingPage::PreprocessingPage(QWidget* parent, const QString& settings_fi
   connect(&run_, &Preprocessing::stage_ended, this, &PreprocessingPage::show_row);
   connect(&run_, &Preprocessing::progressed, this,
           [this](double fraction) { bar_->setValue(static_cast<int>(1000.0 * fraction)); });
-  connect(&run_, &Preprocessing::noted, this, [this](const QString& note) { log(tr("note: %1").arg(note)); });
+  connect(&run_, &Preprocessing::noted, this, [this](const QString& note) {
+    write(tr("note: %1").arg(note));  // said by who shows the document
+  });
   connect(&run_, &Preprocessing::cancelled, this, [this] { finish(tr("Cancelled. Nothing was saved.")); });
   connect(&run_, &Preprocessing::failed, this, [this](const QString& problem) { finish(problem); });
   connect(&run_, &Preprocessing::done, this, [this] {
@@ -247,8 +249,12 @@ void PreprocessingPage::finish(const QString& status) {
   (done ? go_on_ : back_)->setFocus();
 }
 
-void PreprocessingPage::log(const QString& line) {
+void PreprocessingPage::write(const QString& line) {
   log_->appendPlainText(QTime::currentTime().toString("HH:mm:ss  ") + line);
+}
+
+void PreprocessingPage::log(const QString& line) {
+  write(line);
   emit said(line);
 }
 

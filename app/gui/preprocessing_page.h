@@ -45,7 +45,8 @@ class PreprocessingPage : public QWidget {
   void show_row(const StageRow& row);
   void finish(const QString& status);
   void leave_out(int from, int to);
-  void log(const QString& line);
+  void write(const QString& line);  // into the page's own log
+  void log(const QString& line);    // and into everybody's
   void show_buttons();
 
   Preprocessing run_;

@@ -7,9 +7,12 @@
 #include <QDBusPendingReply>
 #include <QDBusVariant>
 #include <QFileInfo>
+#include <QPainter>
 #include <QPointer>
+#include <QProxyStyle>
 #include <QSettings>
 #include <QStyleFactory>
+#include <QStyleOption>
 
 namespace atomesh::gui {
 
@@ -39,6 +42,23 @@ bool platform_is_dark() {
   static const bool dark = is_dark(QApplication::palette());
   return dark;
 }
+
+// Fusion draws the frames of check boxes darker than the window, where on a dark one nobody sees them.
+class Style : public QProxyStyle {
+ public:
+  Style() : QProxyStyle(QStyleFactory::create(QStringLiteral("Fusion"))) {}
+
+  void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                     const QWidget* widget) const override {
+    QProxyStyle::drawPrimitive(element, option, painter, widget);
+    if (element != PE_IndicatorCheckBox || !is_dark(option->palette)) return;
+    painter->save();
+    painter->setPen(option->palette.color(QPalette::Mid));
+    painter->setBrush(Qt::NoBrush);
+    painter->drawRect(option->rect.adjusted(0, 0, -1, -1));
+    painter->restore();
+  }
+};
 
 struct Colors {
   const char* window;
@@ -111,7 +131,7 @@ QColor error_color(const QPalette& palette) {
 
 ThemeKeeper::ThemeKeeper(QObject* parent) : QObject(parent), theme_(chosen_theme()), system_dark_(platform_is_dark()) {
   keeper() = this;
-  QApplication::setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
+  QApplication::setStyle(new Style);
   apply();
   ask_portal();
 }

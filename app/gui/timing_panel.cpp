@@ -2,6 +2,7 @@
 
 #include <QApplication>
 #include <QClipboard>
+#include <QGridLayout>
 #include <QHeaderView>
 #include <QLabel>
 #include <QLocale>
@@ -9,7 +10,6 @@
 #include <QPushButton>
 #include <QStyledItemDelegate>
 #include <QTreeWidget>
-#include <QVBoxLayout>
 
 #include "app/gui/render_worker.h"
 #include "core/memory.h"
@@ -78,12 +78,14 @@ void TimingPanel::build() {
   copy_->setObjectName("timing_copy");
   copy_->setToolTip(tr("All of this as text"));
   connect(copy_, &QPushButton::clicked, this, &TimingPanel::copy);
-  auto* all = new QVBoxLayout(this);
-  all->addWidget(stages_title_);
-  all->addWidget(stages_tree_, 3);
-  all->addWidget(frame_title);
-  all->addWidget(frame_tree_, 2);
-  all->addWidget(copy_, 0, Qt::AlignRight);
+  auto* all = new QGridLayout(this);
+  all->addWidget(stages_title_, 0, 0);
+  all->addWidget(stages_tree_, 1, 0);
+  all->addWidget(frame_title, 0, 1);
+  all->addWidget(frame_tree_, 1, 1);
+  all->addWidget(copy_, 2, 1, Qt::AlignRight);
+  all->setColumnStretch(0, 3);
+  all->setColumnStretch(1, 2);
 }
 
 void TimingPanel::set_stages(const std::vector<StageTime>& stages) {

@@ -113,7 +113,8 @@ TEST_F(DefectListTest, EverythingPlantedIsARowAtItsPlace) {
     EXPECT_EQ(text(row, DefectList::kind), "Vacancy");
     EXPECT_EQ(text(row, DefectList::vacancies), "1");
     EXPECT_EQ(text(row, DefectList::extras), "0");
-    EXPECT_NEAR(text(row, DefectList::x).toDouble(), planted.vacancies[static_cast<std::size_t>(i)].x, 0.001);
+    EXPECT_NEAR(list.cluster(row).centre.x, planted.vacancies[static_cast<std::size_t>(i)].x, 0.001);
+    EXPECT_EQ(text(row, DefectList::x), QString::number(list.cluster(row).centre.x, 'f', 2));
   }
   const int pair = row_at(0.5 * (planted.vacancies[3] + planted.vacancies[4]));
   EXPECT_EQ(text(pair, DefectList::vacancies), "2");

@@ -15,6 +15,7 @@
 #include <QSpinBox>
 #include <QTest>
 #include <cstdlib>
+#include <filesystem>
 
 #include "app/gui/copy_picture.h"
 #include "app/gui/movie_dialog.h"
@@ -77,6 +78,19 @@ TEST_F(OutputDialogs, ThePictureIsThatOfTheModel) {
                no_progress());
   EXPECT_EQ(test::read_bytes(folder->file("dialog.png")), test::read_bytes(folder->file("model.png")));
   EXPECT_FALSE(dialog.isVisible());
+}
+
+TEST_F(OutputDialogs, TheNameIsReadyToBeTypedAndFollowsWhatIsOpen) {
+  MovieDialog dialog(workspace, nullptr);
+  dialog.set_path(file("salt.webm"));
+  test::show(dialog);
+  auto& name = child<QLineEdit>(dialog, "movie_file");
+  ASSERT_TRUE(wait_for([&] { return name.hasFocus(); }));
+  QTest::keyClicks(&name, "turning");
+  EXPECT_EQ(dialog.path(), file("turning.webm"));
+  std::filesystem::copy_file(crb, folder->file("other.crb"));
+  workspace.show_document(open_document(folder->file("other.crb"), {}, no_progress()));
+  EXPECT_EQ(QFileInfo(dialog.path()).fileName(), "other.webm");
 }
 
 TEST_F(OutputDialogs, SizesByNameAndInRatio) {

@@ -9,6 +9,7 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QSignalSpy>
+#include <QStackedWidget>
 #include <QTest>
 #include <set>
 
@@ -78,10 +79,17 @@ TEST_F(Window, EveryMenuHasEntriesAndItsKeyForItself) {
     EXPECT_TRUE(keys.insert(QKeySequence::mnemonic(action->text())[0].key()).second) << action->text().toStdString();
   }
   EXPECT_EQ(keys.size(), 6U);
-  for (const QDockWidget* dock : window->findChildren<QDockWidget*>()) {
-    for (const QAbstractButton* button : dock->findChildren<QAbstractButton*>()) {
-      const QKeySequence key = QKeySequence::mnemonic(button->text());
-      EXPECT_TRUE(key.isEmpty() || !keys.contains(key[0].key())) << button->text().toStdString();
+  QList<const QWidget*> others{&child<QStackedWidget>(*window, "pages")};
+  for (const QDockWidget* dock : window->findChildren<QDockWidget*>()) others << dock;
+  for (const QWidget* other : others) {
+    QStringList texts;
+    for (const QAbstractButton* button : other->findChildren<QAbstractButton*>()) texts << button->text();
+    for (const QLabel* label : other->findChildren<QLabel*>()) {
+      if (label->buddy() != nullptr) texts << label->text();
+    }
+    for (const QString& text : texts) {
+      const QKeySequence key = QKeySequence::mnemonic(text);
+      EXPECT_TRUE(key.isEmpty() || !keys.contains(key[0].key())) << text.toStdString();
     }
   }
   std::set<QString> shortcuts;

@@ -11,6 +11,7 @@
 #include <QSpinBox>
 #include <QStackedWidget>
 #include <QTimer>
+#include <QTreeWidget>
 #include <map>
 #include <set>
 
@@ -465,6 +466,15 @@ TEST_F(WindowActions, RecentFilesOpenAgain) {
   recent.setActiveAction(entry("salt.crb"));
   QTest::keyClick(&recent, Qt::Key_Return);
   EXPECT_TRUE(wait_for([&] { return workspace().document()->path == folder.file("salt.crb"); }));
+}
+
+// Where text is shown that can be copied, the key copies that.
+TEST_F(WindowActions, CopyIsOfWhatHasTheFocus) {
+  auto& facts = child<QTreeWidget>(*window, "material_facts");
+  start_over();
+  facts.setFocus();
+  QTest::keyClick(&facts, Qt::Key_C, Qt::ControlModifier);
+  EXPECT_TRUE(QApplication::clipboard()->text().contains("salt.crb"));
 }
 
 // Before anything is open there is nothing to save, to copy or to look for.
