@@ -1,7 +1,7 @@
 #include "render/gl/preintegration_table.h"
 
-#include <algorithm>
-#include <limits>
+#include <array>
+#include <chrono>
 #include <vector>
 
 namespace atomesh::gl {
@@ -9,56 +9,43 @@ namespace atomesh::gl {
 namespace {
 
 constexpr GLuint pieces_unit = 8;
-constexpr int cells = 1024;  // segment_cells of segment.glsl
-// Beyond every scalar, and still far from what float overflows at.
-constexpr float beyond = 1e30F;
+constexpr GLuint table_unit = 9;
+constexpr GLuint scales_block = 8;
+constexpr int cells = 1024;  // segment_cells of segment_map.glsl
 
-struct MapPiece {
-  Vec4f first{0.0F};  // RGB, extinction where it begins
-  Vec4f slope{0.0F};  // for each unit of the scalar
-  float begin = -beyond;
-  float end = beyond;
-};
-
-// Ascending. A jump is where one ends at another colour than the next begins with.
-std::vector<MapPiece> map_pieces(const ColorMap& map, double alpha_length) {
-  const auto optical = [alpha_length](const Vec4f& color) {
-    return glm::dvec4(color.r, color.g, color.b, static_cast<double>(color.a) * alpha_length);
-  };
-  const std::vector<ColorMapEntry>& entries = map.entries;
-  std::vector<MapPiece> pieces;
-  pieces.push_back(
-      {Vec4f(optical(entries.front().color)), Vec4f(0.0F), -beyond, static_cast<float>(entries.front().scalar)});
-  for (std::size_t i = 0; i + 1 < entries.size(); ++i) {
-    const auto begin = static_cast<float>(entries[i].scalar);
-    const auto end = static_cast<float>(entries[i + 1].scalar);
-    if (!(begin < end)) continue;
-    const glm::dvec4 first = optical(entries[i].color);
-    const glm::dvec4 rise = optical(entries[i + 1].color) - first;
-    const double width = static_cast<double>(end) - static_cast<double>(begin);
-    pieces.push_back({Vec4f(first), Vec4f(rise / width), begin, end});
-  }
-  pieces.push_back(
-      {Vec4f(optical(entries.back().color)), Vec4f(0.0F), static_cast<float>(entries.back().scalar), beyond});
-  return pieces;
-}
-
-// As segment.glsl reads them.
+// As segment_map.glsl reads them.
 std::vector<Vec4f> texels_of(const std::vector<MapPiece>& pieces) {
   std::vector<Vec4f> texels;
   const auto add = [&](std::size_t i) {
     const MapPiece& piece = pieces[i];
-    texels.push_back(piece.first);
-    texels.push_back(piece.slope);
-    texels.emplace_back(piece.begin, piece.end, static_cast<float>(3 * (cells + 1 + i)), 0.0F);
+    texels.emplace_back(piece.first);
+    texels.emplace_back(piece.slope);
+    texels.emplace_back(piece.begin, piece.end, 3 * (cells + 1 + i), 0.0F);
   };
   std::size_t at = 0;
   for (int cell = 0; cell <= cells; ++cell) {
-    while (static_cast<float>(cell) / cells >= pieces[at].end) ++at;
+    while (static_cast<double>(cell) / cells >= pieces[at].end) ++at;
     add(at);
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) add(i);
   return texels;
+}
+
+// Uniform block SegmentTable of segment.glsl.
+struct Scales {
+  std::array<float, 2> scalars;
+  std::array<float, 2> layers;
+  float bend;
+  std::array<float, 3> unused{};
+};
+
+// Places lie in the middle of texels.
+std::array<float, 2> scale(double whole, int count) {
+  return {static_cast<float>(whole * (count - 1) / count), 0.5F / static_cast<float>(count)};
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -66,7 +53,11 @@ std::vector<Vec4f> texels_of(const std::vector<MapPiece>& pieces) {
 void PreintegrationTable::update(const ColorMap& color_map, double alpha_length) {
   if (pieces_texture_ && color_map == color_map_ && alpha_length == alpha_length_) return;
   check_color_map(color_map);
-  pieces_.write(std::span<const Vec4f>(texels_of(map_pieces(color_map, alpha_length))));
+  color_map_ = color_map;
+  alpha_length_ = alpha_length;
+  pieces_ = map_pieces(color_map, alpha_length);
+  longest_ = -1.0;
+  pieces_buffer_.write(std::span<const Vec4f>(texels_of(pieces_)));
   if (!pieces_texture_) {
     GLuint name = 0;
     glGenTextures(1, &name);
@@ -74,14 +65,59 @@ void PreintegrationTable::update(const ColorMap& color_map, double alpha_length)
   }
   glActiveTexture(GL_TEXTURE0 + pieces_unit);
   glBindTexture(GL_TEXTURE_BUFFER, pieces_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, pieces_.name());
-  color_map_ = color_map;
-  alpha_length_ = alpha_length;
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, pieces_buffer_.name());
+}
+
+bool PreintegrationTable::make_table(double longest, double error) {
+  if (longest == longest_ && error == error_) return static_cast<bool>(stats_.bytes);
+  const auto start = std::chrono::steady_clock::now();
+  stats_ = {};
+  stats_.size = choose_size(pieces_, longest, error);
+  stats_.choose_ms = milliseconds_since(start);
+  longest_ = longest;
+  error_ = error;
+  if (stats_.size.scalars == 0) return false;
+  const auto filling = std::chrono::steady_clock::now();
+  fill(stats_.size);
+  stats_.build_ms = milliseconds_since(filling);
+  return true;
+}
+
+void PreintegrationTable::fill(const TableSize& size) {
+  if (!program_) program_ = Program::compute("preintegrate.comp");
+  if (table_.width() != size.scalars || table_.depth() != size.layers) {
+    table_ = Texture::make_3d(GL_RGBA32F, size.scalars, size.scalars, size.layers);
+  }
+  stats_.bytes = sizeof(Vec4f) * static_cast<std::size_t>(size.scalars) * static_cast<std::size_t>(size.scalars) *
+                 static_cast<std::size_t>(size.layers);
+  const Scales scales{scale(1.0, size.scalars), scale((size.longest + size.bend) / size.longest, size.layers),
+                      static_cast<float>(size.bend)};
+  scales_.write(std::span<const Scales>(&scales, 1));
+  bind();
+  program_.use();
+  glUniform1f(0, static_cast<float>(size.longest));
+  glUniform1f(1, static_cast<float>(size.bend));
+  glBindImageTexture(0, table_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  const auto groups = static_cast<GLuint>((size.scalars + 7) / 8);
+  glDispatchCompute(groups, groups, static_cast<GLuint>(size.layers));
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glFinish();
 }
 
 void PreintegrationTable::bind() const {
   glActiveTexture(GL_TEXTURE0 + pieces_unit);
   glBindTexture(GL_TEXTURE_BUFFER, pieces_texture_.name());
+  if (stats_.bytes == 0) return;
+  table_.bind(table_unit);
+  scales_.bind_uniform(scales_block);
+}
+
+std::vector<Vec4f> PreintegrationTable::read() const {
+  std::vector<Vec4f> entries(stats_.bytes / sizeof(Vec4f));
+  if (entries.empty()) return entries;
+  table_.bind(table_unit);
+  glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, entries.data());
+  return entries;
 }
 
 }  // namespace atomesh::gl

@@ -1,23 +1,39 @@
 // The light of a ray's segment along which the scalar goes linearly, seen through the colour map at every point
-// (render/shared/optics.h). To be included by fragment shaders (and compute shaders), whose program is drawn with
-// PreintegrationTable::bind().
+// (render/shared/optics.h). To be included by shaders that are run after PreintegrationTable::bind().
 //
 //   vec4 segment_light(float scalar_near, float scalar_far, float length)
 //
 // scalar in [0,1] where the ray enters and where it leaves, length in Å: premultiplied RGB and opacity. Any finite
 // values are fine; of equal scalars and length 0 too.
 //
-// EXACT: the segment is cut at the map's knots, and within intervals where it is deeper than 1; each piece by the
-// closed form of render/shared/segment.h. Some drivers run both sides of every branch, and a loop's body always once:
-// hence one body that does all, its first pass for nearly every segment the last.
-//
-// Read from: the colour map's pieces, three texels each (PreintegrationTable says how they come about):
-//   RGB and extinction (1/Å) where the piece begins; what they change by for each unit of the scalar;
-//   scalar where the piece begins, where it ends, and the place of its first texel in the list of pieces without cells.
-// First those of segment_cells + 1 cells of the scalar (of the piece at the cell's lower end), then the list.
+// Defines: TABLE looks it up in the pre-integration table; without, or with EXACT, it is integrated exactly.
+// Reads: texture units 8 (the map's pieces, segment_map.glsl) or 9 (the table) and, with TABLE, uniform block 8.
 
-layout(binding = 8) uniform samplerBuffer segment_pieces;
-const int segment_cells = 1024;
+#ifdef TABLE
+
+layout(binding = 9) uniform sampler3D segment_table;  // E and κ of render/gl/preintegration_map.h
+layout(std140, binding = 8) uniform SegmentTable {
+  vec2 segment_scalars;  // from a scalar to the texture's coordinate: factor, and what is added
+  vec2 segment_layers;   // from length / (length + bend) to the texture's coordinate
+  float segment_bend;    // Å
+};
+
+vec4 segment_light(float scalar_near, float scalar_far, float length) {
+  vec2 scalars = vec2(scalar_near, scalar_far) * segment_scalars.x + segment_scalars.y;
+  float layer = length / (length + segment_bend) * segment_layers.x + segment_layers.y;
+  vec4 entry = textureLod(segment_table, vec3(scalars, layer), 0.0);
+  float depth = entry.a * length;
+  // 1 - e^-depth and the same divided by the extinction; where thin by their series, to float's last places.
+  float series = 1.0 - depth * (1.0 / 2.0) * (1.0 - depth * (1.0 / 3.0) * (1.0 - depth * (1.0 / 4.0)));
+  bool thin = depth < 0.0625;
+  float opacity = thin ? depth * series : 1.0 - exp(-depth);
+  float way = thin ? length * series : opacity / entry.a;
+  return vec4(entry.rgb * way, opacity);
+}
+
+#else
+
+#include "segment_map.glsl"
 
 // Weights of the piece's first colour and of what colours change by: integrate_piece() of render/shared/segment.h.
 vec2 segment_piece(float mean, float half_difference) {
@@ -41,13 +57,13 @@ vec2 segment_piece(float mean, float half_difference) {
   return vec2(1.0 - through, fma(root, s, -through));
 }
 
-vec4 segment_light_exact(float scalar_near, float scalar_far, float length) {
+// The segment is cut at the map's knots, and within pieces of the map where it is deeper than 1; each part by the
+// closed form. Some drivers run both sides of every branch, and a loop's body once at least: hence one body that does
+// all, its first pass the last one of most segments.
+vec4 segment_light(float scalar_near, float scalar_far, float length) {
   float change = scalar_far - scalar_near;
   bool up = change >= 0.0;
-  float per_change = 1.0 / (abs(change) < 1e-30 ? 1e-30 : change);
-  // Going down the first piece is that at the cell's upper end: those beyond the scalar come out empty.
-  int cell = int(clamp(scalar_near, 0.0, 1.0) * float(segment_cells));
-  int place = 3 * min(up ? cell : cell + 1, segment_cells);
+  int place = segment_first_piece(scalar_near, up);
   float u = 0.0;
   float through = 1.0;
   vec3 color = vec3(0.0);
@@ -56,9 +72,7 @@ vec4 segment_light_exact(float scalar_near, float scalar_far, float length) {
     vec4 first = texelFetch(segment_pieces, place);
     vec4 slope = texelFetch(segment_pieces, place + 1);
     vec4 range = texelFetch(segment_pieces, place + 2);
-    // A scalar at a knot belongs to the piece above it.
-    bool last = up ? range.y >= scalar_far && range.y > scalar_near : range.x <= scalar_far;
-    float u_knot = last ? 1.0 : clamp(((up ? range.y : range.x) - scalar_near) * per_change, u, 1.0);
+    float u_knot = segment_knot(range.xy, scalar_near, scalar_far, u);
     float rest = u_knot - u;
     float beyond = fma(u, change, scalar_near) - range.x;
     // Bounded, so that its square is a float, too.
@@ -80,6 +94,4 @@ vec4 segment_light_exact(float scalar_near, float scalar_far, float length) {
   return vec4(color, 1.0 - through);
 }
 
-vec4 segment_light(float scalar_near, float scalar_far, float length) {
-  return segment_light_exact(scalar_near, scalar_far, length);
-}
+#endif
