@@ -43,10 +43,17 @@ bool platform_is_dark() {
   return dark;
 }
 
-// Fusion draws the frames of check boxes darker than the window, where on a dark one nobody sees them.
+// Fusion draws the frames of check boxes darker than the window, where on a dark one nobody sees them; and its icons of
+// "Close" and "OK" are for light ones.
 class Style : public QProxyStyle {
  public:
   Style() : QProxyStyle(QStyleFactory::create(QStringLiteral("Fusion"))) {}
+
+  int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
+                QStyleHintReturn* more) const override {
+    if (hint == SH_DialogButtonBox_ButtonsHaveIcons) return 0;
+    return QProxyStyle::styleHint(hint, option, widget, more);
+  }
 
   void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                      const QWidget* widget) const override {

@@ -16,7 +16,6 @@
 #include <QRegularExpression>
 #include <QSettings>
 #include <QSpinBox>
-#include <QStyleFactory>
 #include <QTableView>
 #include <cstdlib>
 #include <filesystem>
@@ -98,13 +97,13 @@ class Guide : public ::testing::Test {
 
   void SetUp() override {
     if (!test::has_opengl()) GTEST_SKIP() << "no display with OpenGL";
-    QApplication::setStyle(QStyleFactory::create("Fusion"));
-    QApplication::setPalette(light_palette());
     QFont font("DejaVu Sans");
     font.setPointSizeF(9.0);
     font.setStyleStrategy(QFont::NoSubpixelAntialias);
     QApplication::setFont(font);
     QSettings().clear();
+    theme = std::make_unique<ThemeKeeper>();
+    theme->choose(Theme::light);
     for (const char* made : {"nacl.crb", "diamond.crb"}) fs::remove(crystals->file(made));
     window = std::make_unique<MainWindow>();
     window->resize(1140, 630);
@@ -146,6 +145,7 @@ class Guide : public ::testing::Test {
   }
 
   static inline std::unique_ptr<Crystals> crystals;
+  std::unique_ptr<ThemeKeeper> theme;
   std::unique_ptr<MainWindow> window;
 };
 

@@ -56,7 +56,8 @@ TEST(WindowAnswers, WhileTwoHundredThousandAtomsAreDrawn) {
     std::printf("%s: %zu events, half answered within %.1f ms, 99 %% within %.1f ms, all within %.1f ms\n",
                 std::string(mode_name(mode)).c_str(), heartbeat.answers().size(), heartbeat.quantile(0.5),
                 heartbeat.quantile(0.99), heartbeat.slowest());
-    EXPECT_LT(heartbeat.quantile(0.99), 50.0 * slowdown) << mode_name(mode);
+    // Every event. In ten runs on two cores with ten processes waiting for them the slowest took 30.6 ms.
+    EXPECT_LT(heartbeat.slowest(), 50.0 * slowdown) << mode_name(mode);
   }
 }
 

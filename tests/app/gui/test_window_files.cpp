@@ -12,6 +12,7 @@
 #include "app/gui/crystal_view_dialog.h"
 #include "app/gui/loader_page.h"
 #include "app/gui/preprocessing_page.h"
+#include "app/gui/save_picture.h"
 #include "app/gui/view_input.h"
 #include "core/parameter_file.h"
 #include "tests/app/gui/window_fixture.h"
@@ -79,6 +80,15 @@ TEST_F(WindowFiles, DropsOpenAndApply) {
   EXPECT_EQ(window->workspace().parameters(), Parameters());
   child<QAction>(*window, "action_redo").trigger();
   EXPECT_EQ(window->workspace().parameters(), parameters);
+  // A picture of the view brings it back, with what lay over it.
+  save_picture(folder.file("view.png"), *window->workspace().document(), parameters,
+               {.width = 40, .height = 30, .parts = {.legend = false, .scale_bar = true, .tripod = false}},
+               no_progress());
+  child<QAction>(*window, "action_undo").trigger();
+  window->workspace().set_view_options({});
+  drop({QString::fromStdString(folder.file("view.png"))});
+  EXPECT_TRUE(wait_for([&] { return window->workspace().parameters() == parameters; }));
+  EXPECT_EQ(window->workspace().view_options(), (ViewOptions{.legend = false, .scale_bar = true, .tripod = false}));
 }
 
 TEST_F(WindowFiles, AClickPicksTwoMeasureAndEscapeForgets) {
