@@ -23,12 +23,16 @@ class MarkedTiles {
 
   // Whether a tile that these pixels (both ends included, may reach beyond the window) touch has a marked one.
   bool meets(int left, int right, int bottom, int top) const {
-    left = std::max(left, left_) >> shift;
-    right = std::min(right, right_) >> shift;
-    bottom = std::max(bottom, bottom_) >> shift;
-    top = std::min(top, top_) >> shift;
+    left = std::max(left, left_);
+    right = std::min(right, right_);
+    bottom = std::max(bottom, bottom_);
+    top = std::min(top, top_);
     if (left > right || bottom > top) return false;
-    return sum(right + 1, top + 1) + sum(left, bottom) != sum(left, top + 1) + sum(right + 1, bottom);
+    left >>= shift;
+    bottom >>= shift;
+    right = (right >> shift) + 1;
+    top = (top >> shift) + 1;
+    return sum(right, top) + sum(left, bottom) != sum(left, top) + sum(right, bottom);
   }
 
  private:

@@ -22,8 +22,9 @@ constexpr std::size_t kept_pixel_bytes = 32;
 constexpr std::size_t kept_depth_bytes = 4;
 constexpr std::size_t kept_light_bytes = 8;
 constexpr std::size_t least_memory = 1 << 16;
-// Fragments a marked pixel is expected to have before it is known.
-constexpr std::size_t usual_length = 128;
+// Fragments a marked pixel is expected to have before it is known, and all together.
+constexpr std::size_t usual_length = 256;
+constexpr std::size_t least_nodes = 1 << 16;
 // Of which lists are made at once, so that their fragments can be counted in 32 bits.
 constexpr std::uint64_t most_pixels = std::uint64_t{1} << 21;
 
@@ -184,7 +185,7 @@ void OrderRepair::repair(GLuint framebuffer, int width, int height, const std::f
     const std::size_t heads = window.pixels() * head_bytes;
     const std::size_t most_nodes =
         std::min({std::max(settings_.memory, heads + least_memory) - heads, largest_storage_}) / node_bytes;
-    const std::size_t first_nodes = std::min<std::size_t>(most_nodes, marked * usual_length);
+    const std::size_t first_nodes = std::min(most_nodes, std::max<std::size_t>(marked * usual_length, least_nodes));
     keep ? reserve(pixels, 0) : reserve(window.pixels(), first_nodes);
 
     tiles_ = marked_tiles(window);

@@ -374,8 +374,8 @@ TEST(MarkedTiles, AreMetByWhatTouchesThem) {
   MarkedTiles tiles(pixels, columns, rows, 2);
   for (int n = 0; n < 2000; ++n) {
     const auto edge = [&](int size) { return static_cast<int>(random() % static_cast<unsigned>(size + 20)) - 10; };
-    const auto [left, right] = std::minmax(edge(columns), edge(columns));
-    const auto [bottom, top] = std::minmax(edge(rows), edge(rows));
+    const auto [left, right] = std::minmax({edge(columns), edge(columns)});
+    const auto [bottom, top] = std::minmax({edge(rows), edge(rows)});
     if (n == 1000) tiles.look_at(8, 0, 16, 21);
     const int first = n < 1000 ? 0 : 8;
     const int last = n < 1000 ? columns - 1 : 23;
@@ -397,12 +397,12 @@ TEST(MarkedTiles, AreMetByWhatTouchesThem) {
 // A list that is longer than was guessed is made once more in more memory.
 TEST_F(OrderRepairTest, GrowsWhereMemoryMayGrow) {
   std::vector<Layer> layers = make_layers(2, 0.0, 0.1F);
-  for (int i = 0; i < 600; ++i) {
-    layers.push_back({3, 9, 5, 8, 1.0F - static_cast<float>(i) / 700.0F, Vec4f(0.002F, 0.001F, 0.0F, 0.002F)});
+  for (int i = 0; i < 4000; ++i) {
+    layers.push_back({3, 9, 5, 8, 1.0F - static_cast<float>(i) / 4100.0F, Vec4f(3e-4F, 2e-4F, 0.0F, 3e-4F)});
   }
   const RepairStats stats = compare(layers, {});
   EXPECT_EQ(stats.draws, 2);
-  EXPECT_GE(stats.longest, 600U);
+  EXPECT_GE(stats.longest, 4000U);
 }
 
 TEST_F(OrderRepairTest, OneListTooLongForTheMemoryIsCountedWrong) {
