@@ -1,4 +1,4 @@
-// A k-buffer for each pixel of the part, in memory.
+// A k-buffer for each pixel of the part, in memory (coherent: the next fragment of the pixel may run anywhere).
 #include "repair.glsl"
 
 struct Kept {
@@ -8,9 +8,9 @@ struct Kept {
   uint count;
   uint wrong;
 };
-layout(std430, binding = 4) buffer KeptPixels { Kept kept[]; };
-layout(std430, binding = 5) buffer KeptDepths { float kept_depths[]; };
-layout(std430, binding = 6) buffer KeptLights { uvec2 kept_lights[]; };
+layout(std430, binding = 4) coherent buffer KeptPixels { Kept kept[]; };
+layout(std430, binding = 5) coherent buffer KeptDepths { float kept_depths[]; };
+layout(std430, binding = 6) coherent buffer KeptLights { uvec2 kept_lights[]; };
 
 #define SLOT_DEPTH(i) kept_depths[pixel_of_part() * uint(K) + (i)]
 #define SLOT_LIGHT(i) kept_lights[pixel_of_part() * uint(K) + (i)]
