@@ -292,6 +292,18 @@ void add_quality(Table& t) {
   t.add(
       "quality.supersampling", ParameterType::integer, "Supersampling", "", 1, 16, "n draws n × n rays for each pixel.",
       [](Parameters & p) -> auto& { return p.supersampling; });
+  t.choice(
+      "havs.order", "Order on OpenGL", {"lists", "k-buffer", "none"},
+      "Of the renderer havs: what is done about pixels whose cells were drawn in a wrong order. lists: their cells are "
+      "sorted. k-buffer: they go through a buffer of k cells; what is further out of order stays wrong. none: nothing.",
+      [](Parameters & p) -> auto& { return p.havs.order; });
+  t.add(
+      "havs.k", ParameterType::integer, "k of the k-buffer", "", 2, 64, "Cells of a pixel that the k-buffer keeps.",
+      [](Parameters & p) -> auto& { return p.havs.k; });
+  t.add(
+      "havs.memory", ParameterType::integer, "Memory for order", "MB", 1, 65536,
+      "What lists or k-buffers may take; with less the cells are drawn more often.",
+      [](Parameters & p) -> auto& { return p.havs.memory; });
 }
 
 }  // namespace

@@ -93,6 +93,18 @@ struct VolumeParameters {
   bool operator==(const VolumeParameters&) const = default;
 };
 
+// Of the renderer "havs": what is done about pixels whose cells were drawn in a wrong order.
+//   lists: their cells are sorted pixel by pixel
+//   k_buffer: they go through a buffer that keeps k of them; pixels that are too far out of order for it stay wrong
+//   none: nothing
+enum class HavsOrder { lists, k_buffer, none };
+struct HavsParameters {
+  HavsOrder order = HavsOrder::lists;
+  int k = 16;
+  int memory = 256;  // MB, for lists or buffers; with less the cells are drawn more often
+  bool operator==(const HavsParameters&) const = default;
+};
+
 // B.6.3.2
 struct SurfaceParameters {
   Vec3f color{0.75F, 0.75F, 0.72F};  // ambient and diffuse
@@ -142,6 +154,7 @@ struct Parameters {
   SurfaceParameters surface;
   XrayParameters xray;
   AtomsParameters atoms;
+  HavsParameters havs;
 
   static std::array<Light, max_lights> default_lights();
   bool operator==(const Parameters&) const = default;

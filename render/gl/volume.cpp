@@ -26,6 +26,9 @@ constexpr std::size_t slab_bytes = cells_per_slab * vertices_per_cell * sizeof(F
 // Slabs of a view that is drawn again are kept up to so many bytes.
 constexpr std::size_t kept_bytes = std::size_t{512} << 20;
 
+// Of the stencil buffer: a cell came that begins before the last one of its pixel.
+constexpr GLuint disorder_bit = 1;
+
 GLint integer(GLenum name) {
   GLint value = 0;
   glGetIntegerv(name, &value);
@@ -40,9 +43,7 @@ bool same(const Camera& a, const Camera& b) {
 
 Volume::Volume() : driver_(current_driver()) {
   require_sufficient_driver();
-  const std::array<std::string, 1> perspective{"PERSPECTIVE"};
-  perspective_ = Program::draw("cells.vert", "blend.frag", perspective);
-  parallel_ = Program::draw("cells.vert", "blend.frag");
+  blend_ = make_programs("blend.frag", {});
   std::array<GLint, 2> viewport{};
   glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
   viewport_side_ = std::min({viewport[0], viewport[1], 2 * guard_pixels});
@@ -51,6 +52,28 @@ Volume::Volume() : driver_(current_driver()) {
   largest_side_ = std::min(integer(GL_MAX_TEXTURE_SIZE), viewport_side_);
   vertex_array_ = make_vertex_array();
   framebuffer_ = make_framebuffer();
+}
+
+Volume::Programs Volume::make_programs(std::string_view fragment_file, std::vector<std::string> defines) const {
+  Programs programs;
+  programs.parallel = Program::draw("cells.vert", fragment_file, defines);
+  defines.emplace_back("PERSPECTIVE");
+  programs.perspective = Program::draw("cells.vert", fragment_file, defines);
+  return programs;
+}
+
+void Volume::make_repair(const HavsParameters& parameters) {
+  RepairSettings settings;
+  if (parameters.order == HavsOrder::k_buffer) {
+    // Software draws the fragments of a pixel one after the other, as interlock makes cards do.
+    settings.method = driver_.interlock || driver_.software ? RepairMethod::keep : RepairMethod::replay;
+  }
+  settings.k = parameters.k;
+  settings.memory = static_cast<std::size_t>(parameters.memory) << 20;
+  settings.stencil_bits = disorder_bit;
+  if (repair_ && repair_->settings() == settings) return;
+  repair_ = std::make_unique<OrderRepair>(settings);
+  gather_ = make_programs(repair_->fragment_shader(), repair_->defines());
 }
 
 void Volume::set_scene(const Scene& scene) {
@@ -106,7 +129,6 @@ void Volume::fill(Slab& slab, std::span<const Index> parts) {
     slab.count[begin / cells_per_share] = static_cast<GLsizei>(3 * triangles);
   });
   glUnmapBuffer(GL_ARRAY_BUFFER);
-  for (const GLsizei count : slab.count) last_.triangles += static_cast<std::size_t>(count) / 3;
   last_.faces_ms += ms_since(start);
 }
 
@@ -129,8 +151,9 @@ void Volume::resize(int columns, int rows) {
   }
 }
 
-void Volume::begin_pass(const Program& program) const {
+void Volume::use(const Programs& programs) const {
   const ScreenView& view = mesh_->view();
+  const Program& program = view.perspective ? programs.perspective : programs.parallel;
   program.use();
   const double depth_scale = 2.0 / (static_cast<double>(view.last_w) - static_cast<double>(view.first_w));
   glUniform1f(program.uniform("pixel_scale"), 2.0F / static_cast<float>(viewport_side_));
@@ -144,14 +167,58 @@ void Volume::begin_pass(const Program& program) const {
               static_cast<GLfloat>(grid.y + 0.5 * grid.dy), static_cast<GLfloat>(grid.dx),
               static_cast<GLfloat>(-grid.dy));
   table_.bind();
+  glBindVertexArray(vertex_array_.name());
 }
 
-void Volume::draw_slab(const Slab& slab) const {
-  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
-  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
-  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
-                        reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
-  glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+template <class After>
+void Volume::draw_slabs(After&& after) {
+  const std::size_t count = (parts_.size() + cells_per_slab - 1) / cells_per_slab;
+  const bool keep = count * slab_bytes <= kept_bytes;
+  slabs_.resize(keep ? count : 1);
+  for (std::size_t n = 0; n < count; ++n) {
+    Slab& slab = slabs_[keep ? n : 0];
+    if (!slabs_kept_) {
+      const std::size_t begin = n * cells_per_slab;
+      fill(slab, std::span(parts_).subspan(begin, std::min(cells_per_slab, parts_.size() - begin)));
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
+    glEnableVertexAttribArray(0);
+    glEnableVertexAttribArray(1);
+    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
+    glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
+                          reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
+    glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+    after(slab, static_cast<double>(n + 1) / static_cast<double>(count));
+  }
+  slabs_kept_ = keep;
+}
+
+void Volume::clear_picture() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, columns_, rows_);
+  glViewport(columns_ / 2 - viewport_side_ / 2, rows_ / 2 - viewport_side_ / 2, viewport_side_, viewport_side_);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glStencilMask(0xFF);
+  const std::array<GLfloat, 4> nothing{};
+  glClearBufferfv(GL_COLOR, 0, nothing.data());
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0F, 0);
+}
+
+// Front to back: what comes lies behind what there is. The fixed functions find the pixels whose cells come in another
+// order: where one begins before the last one it is not drawn, but leaves its mark.
+void Volume::set_blending(bool check_order) {
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_FUNC_ADD);
+  glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_CLAMP);  // what rounding puts before the first depth or behind the last
+  (check_order ? glEnable : glDisable)(GL_DEPTH_TEST);
+  (check_order ? glEnable : glDisable)(GL_STENCIL_TEST);
+  glDepthFunc(GL_GEQUAL);
+  glStencilFunc(GL_ALWAYS, disorder_bit, disorder_bit);
+  glStencilOp(GL_KEEP, GL_REPLACE, GL_KEEP);
 }
 
 void Volume::draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window,
@@ -163,51 +230,32 @@ void Volume::draw(const Camera& camera, const Parameters& parameters, const Pixe
   if (grid.columns == 0 || grid.rows == 0) return;
   last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
   if (!same_view(camera, grid, parameters)) find_cells(camera, grid, parameters, progress);
+  table_.update(parameters.volume.color_map, parameters.volume.alpha_length);
+  const bool check_order = parameters.havs.order != HavsOrder::none;
+  if (check_order) make_repair(parameters.havs);
   stats.setup_ms += ms_since(start);
 
   const Clock::time_point drawing = Clock::now();
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(0, 0, columns_, rows_);
-  glViewport(columns_ / 2 - viewport_side_ / 2, rows_ / 2 - viewport_side_ / 2, viewport_side_, viewport_side_);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glDepthMask(GL_TRUE);
-  glStencilMask(0xFF);
-  const std::array<GLfloat, 4> nothing{};
-  glClearBufferfv(GL_COLOR, 0, nothing.data());
-  glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0F, 0);
-  glEnable(GL_BLEND);
-  glBlendEquation(GL_FUNC_ADD);
-  glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_STENCIL_TEST);
-  glEnable(GL_DEPTH_CLAMP);
-  table_.update(parameters.volume.color_map, parameters.volume.alpha_length);
-  begin_pass(camera.projection == Projection::perspective ? perspective_ : parallel_);
-  glBindVertexArray(vertex_array_.name());
-  glEnableVertexAttribArray(0);
-  glEnableVertexAttribArray(1);
-
-  const std::size_t count = (parts_.size() + cells_per_slab - 1) / cells_per_slab;
-  const bool keep = count * slab_bytes <= kept_bytes;
-  if (!slabs_kept_) last_.triangles = 0;
-  slabs_.resize(keep ? count : 1);
-  for (std::size_t n = 0; n < count; ++n) {
-    progress.check();
-    Slab& slab = slabs_[keep ? n : 0];
-    if (!slabs_kept_) {
-      const std::size_t begin = n * cells_per_slab;
-      fill(slab, std::span(parts_).subspan(begin, std::min(cells_per_slab, parts_.size() - begin)));
-    }
-    draw_slab(slab);
-    progress.update(static_cast<double>(n + 1) / static_cast<double>(count));
+  clear_picture();
+  set_blending(check_order);
+  use(blend_);
+  last_.triangles = 0;
+  last_.repair = {};
+  draw_slabs([&](const Slab& slab, double fraction) {
+    for (const GLsizei count : slab.count) last_.triangles += static_cast<std::size_t>(count) / 3;
+    progress.update(fraction);
+  });
+  if (check_order) {
+    const auto gather = [&] {
+      use(gather_);
+      draw_slabs([&](const Slab&, double) { progress.check(); });
+    };
+    repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
   }
-  slabs_kept_ = keep;
   glFinish();
   check_errors("drawing the volume");
   progress.update(1.0);
-  last_.draw_ms = ms_since(drawing) - last_.faces_ms;
+  last_.draw_ms = ms_since(drawing) - last_.faces_ms - last_.repair.ms;
   stats.render_ms += ms_since(drawing);
 }
 

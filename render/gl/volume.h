@@ -12,6 +12,7 @@
 #include "render/gl/cell_order.h"
 #include "render/gl/context.h"
 #include "render/gl/objects.h"
+#include "render/gl/order_repair.h"
 #include "render/gl/preintegration_table.h"
 #include "render/gl/screen_mesh.h"
 #include "render/pixel_lattice.h"
@@ -28,6 +29,7 @@ struct VolumeStats {
   double order_ms = 0.0;
   double faces_ms = 0.0;  // front faces, handed to OpenGL
   double draw_ms = 0.0;   // OpenGL
+  RepairStats repair;     // of pixels whose cells came in a wrong order
 };
 
 // Of one context, which is current whenever anything of it is called, the destructor included.
@@ -70,12 +72,24 @@ class Volume {
     std::vector<GLsizei> count;
   };
 
+  // The same for both projections.
+  struct Programs {
+    Program perspective;
+    Program parallel;
+  };
+
   bool same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const;
   void find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters, const Progress& progress);
+  Programs make_programs(std::string_view fragment_file, std::vector<std::string> defines) const;
+  void make_repair(const HavsParameters& parameters);
   void fill(Slab& slab, std::span<const Index> parts);
   void resize(int columns, int rows);
-  void begin_pass(const Program& program) const;
-  void draw_slab(const Slab& slab) const;
+  void clear_picture() const;
+  static void set_blending(bool check_order);
+  void use(const Programs& programs) const;
+  // Calls after(n of all) after each slab.
+  template <class After>
+  void draw_slabs(After&& after);
 
   Driver driver_;
   int largest_side_ = 0;
@@ -88,8 +102,9 @@ class Volume {
   std::vector<Index> parts_;  // in order
   std::vector<Slab> slabs_;
   bool slabs_kept_ = false;  // slabs_ hold all parts
-  Program perspective_;
-  Program parallel_;
+  Programs blend_;
+  std::unique_ptr<OrderRepair> repair_;
+  Programs gather_;  // of repair_
   VertexArray vertex_array_;
   Framebuffer framebuffer_;
   Texture color_;
