@@ -8,8 +8,8 @@ namespace atomesh::gl {
 
 namespace {
 
-constexpr GLuint pieces_unit = 8;
-constexpr GLuint table_unit = 9;
+// One unit for both: a shader reads either the buffer or the table.
+constexpr GLuint unit = 8;
 constexpr GLuint scales_block = 8;
 constexpr int cells = 1024;  // segment_cells of segment_map.glsl
 
@@ -63,7 +63,7 @@ void PreintegrationTable::update(const ColorMap& color_map, double alpha_length)
     glGenTextures(1, &name);
     pieces_texture_ = Handle<detail::destroy_texture>(name);
   }
-  glActiveTexture(GL_TEXTURE0 + pieces_unit);
+  glActiveTexture(GL_TEXTURE0 + unit);
   glBindTexture(GL_TEXTURE_BUFFER, pieces_texture_.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, pieces_buffer_.name());
 }
@@ -101,21 +101,22 @@ void PreintegrationTable::fill(const TableSize& size) {
   const auto groups = static_cast<GLuint>((size.scalars + 7) / 8);
   glDispatchCompute(groups, groups, static_cast<GLuint>(size.layers));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
   glFinish();
 }
 
 void PreintegrationTable::bind() const {
-  glActiveTexture(GL_TEXTURE0 + pieces_unit);
+  glActiveTexture(GL_TEXTURE0 + unit);
   glBindTexture(GL_TEXTURE_BUFFER, pieces_texture_.name());
   if (stats_.bytes == 0) return;
-  table_.bind(table_unit);
+  table_.bind(unit);
   scales_.bind_uniform(scales_block);
 }
 
 std::vector<Vec4f> PreintegrationTable::read() const {
   std::vector<Vec4f> entries(stats_.bytes / sizeof(Vec4f));
   if (entries.empty()) return entries;
-  table_.bind(table_unit);
+  table_.bind(unit);
   glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, entries.data());
   return entries;
 }

@@ -30,7 +30,7 @@ class PreintegrationTable {
   };
   const Stats& stats() const { return stats_; }
 
-  // For the draws that follow: texture units 8 and 9, uniform block 8.
+  // For the draws that follow: texture unit 8 (as a buffer and as a 3D texture) and uniform block 8.
   void bind() const;
 
   // The table's entries (E, κ), the near scalar's place varying fastest, then the far one's, then the layer; waits for

@@ -7,11 +7,11 @@
 // values are fine; of equal scalars and length 0 too.
 //
 // Defines: TABLE looks it up in the pre-integration table; without, or with EXACT, it is integrated exactly.
-// Reads: texture units 8 (the map's pieces, segment_map.glsl) or 9 (the table) and, with TABLE, uniform block 8.
+// Reads texture unit 8 (the table; without TABLE the map in pieces, segment_map.glsl) and, with TABLE, uniform block 8.
 
 #ifdef TABLE
 
-layout(binding = 9) uniform sampler3D segment_table;  // E and κ of render/gl/preintegration_map.h
+layout(binding = 8) uniform sampler3D segment_table;  // E and κ of render/gl/preintegration_map.h
 layout(std140, binding = 8) uniform SegmentTable {
   vec2 segment_scalars;  // from a scalar to the texture's coordinate: factor, and what is added
   vec2 segment_layers;   // from length / (length + bend) to the texture's coordinate
