@@ -139,11 +139,9 @@ TableEntry mix(const TableEntry& a, const TableEntry& b, double u) {
   return {a.emission + u * (b.emission - a.emission), a.extinction + u * (b.extinction - a.extinction)};
 }
 
-double error_of(const TableEntry& approximate, const TableEntry& exact, double length) {
-  const glm::dvec4 expected = light_of(exact, length);
-  const glm::dvec4 difference = glm::abs(light_of(approximate, length) - expected);
-  return std::max({difference.r, difference.g, difference.b, difference.a}) / (expected.a + 1.0 / 256.0);
-}
+// error_of_segment()'s share of the light that does not depend on the opacity.
+constexpr double within_piece = 1.0 / 256.0;
+constexpr double across_knot = 1.0 / 4.0;
 
 // Samples of a table's error: what is looked at first is what was worst in the table before, so that a table that is
 // too small is found out soon.
@@ -180,7 +178,7 @@ class Samples {
         const double length = size.length_of(layer + 0.5);
         const TableEntry mixed = mix(table_entry(pieces_, pair.near, pair.far, size.length_of(layer)),
                                      table_entry(pieces_, pair.near, pair.far, size.length_of(layer + 1)), 0.5);
-        worst = std::max(worst, error_of(mixed, table_entry(pieces_, pair.near, pair.far, length), length));
+        worst = std::max(worst, error_of(pair, mixed, length));
         if (worst > limit) return worst;
       }
     }
@@ -229,7 +227,11 @@ class Samples {
     const auto entry = [&](double i, double j) { return table_entry(pieces_, i / cells, j / cells, length); };
     const TableEntry mixed =
         mix(mix(entry(near, far), entry(near + 1, far), u), mix(entry(near, far + 1), entry(near + 1, far + 1), u), v);
-    return error_of(mixed, table_entry(pieces_, pair.near, pair.far, length), length);
+    return error_of(pair, mixed, length);
+  }
+
+  double error_of(const Pair& pair, const TableEntry& entry, double length) const {
+    return error_of_segment(pieces_, pair.near, pair.far, length, light_of(entry, length));
   }
 
   const std::vector<MapPiece>& pieces_;
@@ -239,6 +241,18 @@ class Samples {
 };
 
 }  // namespace
+
+double error_of_segment(const std::vector<MapPiece>& pieces, double near, double far, double length,
+                        const glm::dvec4& light) {
+  const glm::dvec4 exact = light_of(table_entry(pieces, near, far, length), length);
+  const glm::dvec4 difference = glm::abs(light - exact);
+  const double low = std::min(near, far);
+  const double high = std::max(near, far);
+  const bool knot =
+      std::ranges::any_of(pieces, [&](const MapPiece& piece) { return low < piece.end && piece.end < high; });
+  return std::max({difference.r, difference.g, difference.b, difference.a}) /
+         (exact.a + (knot ? across_knot : within_piece));
+}
 
 TableSize choose_size(const std::vector<MapPiece>& pieces, double longest, double error) {
   double densest = 0.0;

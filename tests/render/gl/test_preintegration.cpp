@@ -259,31 +259,39 @@ TEST_F(Preintegration, EntriesAreThoseOfTheProcessor) {
   EXPECT_NO_THROW(check_errors("filling tables"));
 }
 
-// What a segment is off by, as choose_size() has it.
-double relative_error(const ColorMap& map, double alpha_length, const Segment& s, const Vec4f& light) {
+// error_of_segment() by the judge.
+double error_by_judge(const ColorMap& map, double alpha_length, const Segment& s, const Vec4f& light) {
   const reference::Contribution exact = reference::integrate_mapped(
       map, static_cast<double>(s.near), static_cast<double>(s.far), alpha_length, static_cast<double>(s.length));
   const double opacity = 1.0 - exact.transmittance;
   const glm::dvec4 difference = glm::abs(glm::dvec4(light) - glm::dvec4(exact.color, opacity));
-  return std::max({difference.r, difference.g, difference.b, difference.a}) / (opacity + 1.0 / 256.0);
+  bool knot = false;
+  for (const ColorMapEntry& entry : map.entries) {
+    const auto scalar = static_cast<float>(entry.scalar);
+    knot = knot || (std::min(s.near, s.far) < scalar && scalar < std::max(s.near, s.far));
+  }
+  return std::max({difference.r, difference.g, difference.b, difference.a}) / (opacity + (knot ? 0.25 : 1.0 / 256.0));
 }
 
 TEST_F(Preintegration, TheTableKeepsItsError) {
   PreintegrationTable table;
   const SegmentShader shader("TABLE");
-  for (const char* name : {"gray", "viridis", "cividis", "blue-white-red", "seed-figure-5.8"}) {
-    const ColorMap map = preset_color_map(name);
+  for (const NamedMap& map : maps()) {
     for (const double alpha_length : {1e-6, 0.25, 5.0}) {
       for (const double error : {1e-2, 4e-3}) {
-        table.update(map, alpha_length);
-        ASSERT_TRUE(table.make_table(2.0, error)) << name << ", " << alpha_length << "/Å";
-        const std::vector<Segment> all = segments(map);
+        table.update(map.map, alpha_length);
+        const bool made = table.make_table(2.0, error);
+        // Thin segments need none of what lies between a table's entries; of others no table has jumps.
+        const bool sharp = map.name == "jumps" || map.name == "steep" || (map.name == "windows" && alpha_length > 1.0);
+        EXPECT_EQ(made, alpha_length < 1e-3 || !sharp) << map.name << ", " << alpha_length << "/Å";
+        if (!made) continue;
+        const std::vector<Segment> all = segments(map.map);
         const std::vector<Vec4f> lights = shader.lights(table, all);
         double worst = 0.0;
         for (std::size_t i = 0; i < all.size(); ++i) {
-          worst = std::max(worst, relative_error(map, alpha_length, all[i], lights[i]));
+          worst = std::max(worst, error_by_judge(map.map, alpha_length, all[i], lights[i]));
         }
-        EXPECT_LE(worst, error) << name << ", " << alpha_length << "/Å";
+        EXPECT_LE(worst, error) << map.name << ", " << alpha_length << "/Å";
       }
     }
   }
