@@ -6,8 +6,10 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/cpu/cpu_renderer.h"
 #include "render/gl/context.h"
 #include "render/gl/volume.h"
+#include "render/solids.h"
 
 namespace atomesh {
 
@@ -58,7 +60,7 @@ class HavsFrame final : public Frame {
       : card_(Card::get()), scene_(scene), camera_(camera), parameters_(parameters), window_(window) {}
   ~HavsFrame() override { card_.forget(this); }
 
-  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels&,
+  void draw(const PixelLattice& lattice, Image& image, RenderStats& stats, const Channels& channels,
             Progress& progress) const override {
     card_.with_volume(this, scene_, [&](gl::Volume& volume) {
       const int side = std::min(window_side, volume.largest_side());
@@ -66,7 +68,7 @@ class HavsFrame final : public Frame {
         for (int left = 0; left < window_.width; left += side) {
           const PixelWindow part{window_.left + left, window_.top + top, std::min(side, window_.width - left),
                                  std::min(side, window_.height - top)};
-          volume.draw(camera_, parameters_, part, lattice, stats, progress);
+          volume.draw(camera_, parameters_, part, lattice, stats, progress, ray_ends(channels, part, lattice));
           const auto start = std::chrono::steady_clock::now();
           copy(volume.read(), LatticeGrid(lattice, part), image);
           stats.render_ms += ms_since(start);
@@ -77,6 +79,20 @@ class HavsFrame final : public Frame {
   }
 
  private:
+  // Of the lattice's pixels in the part.
+  std::vector<float> ray_ends(const Channels& channels, const PixelWindow& part, const PixelLattice& lattice) const {
+    std::vector<float> ends;
+    if (channels.ray_end == nullptr) return ends;
+    const LatticeGrid grid(lattice, part);
+    ends.reserve(grid.pixels());
+    for (int j = 0; j < grid.rows(); ++j) {
+      for (int i = 0; i < grid.columns(); ++i) {
+        ends.push_back((*channels.ray_end)[window_.place(grid.column(i), grid.row(j))]);
+      }
+    }
+    return ends;
+  }
+
   void copy(const Image& drawn, const LatticeGrid& grid, Image& image) const {
     for (int j = 0; j < drawn.height; ++j) {
       for (int i = 0; i < drawn.width; ++i) {
@@ -97,13 +113,15 @@ class HavsRenderer final : public Renderer {
   std::string_view name() const override { return "havs"; }
 
   std::unique_ptr<Frame> prepare(const Scene& scene, const Camera& camera, const Parameters& parameters,
-                                 const PixelWindow& window, RenderStats&, Progress& progress) const override {
+                                 const PixelWindow& window, RenderStats& stats, Progress& progress) const override {
     if (scene.mode != Mode::volume) {
       throw UsageError("renderer \"havs\": draws the mode volume only; \"cpu\" draws the mode " +
                        std::string(mode_name(scene.mode)));
     }
     progress.stage("render");
-    return std::make_unique<HavsFrame>(scene, camera, parameters, window);
+    // What stands in the volume is the CPU's, whose pictures are the same.
+    return with_solids(std::make_unique<HavsFrame>(scene, camera, parameters, window), cpu_renderer(), scene, camera,
+                       parameters, window, stats, progress);
   }
 };
 

@@ -46,14 +46,20 @@ struct ScreenVertex {
   float u;
 };
 
-// Whether some pixel's centre lies within the box of these vertices.
+// Columns and rows of a grid, both ends included.
+struct GridBox {
+  int left, right, top, bottom;
+  bool empty() const { return left > right || top > bottom; }
+};
+
+// The pixels of the grid whose centres lie within the box of these vertices.
 template <std::size_t N>
-bool meets_pixel(const std::array<ScreenVertex, N>& corners, const PixelGrid& grid) {
-  const auto between = [](std::int32_t low, std::int32_t high, int count) {
-    const std::int32_t middle = count / 2 * subpixels;
-    const std::int32_t first = std::max((low + middle + subpixels / 2 - 1) >> subpixel_bits, 0);
-    const std::int32_t last = std::min((high + middle - subpixels / 2) >> subpixel_bits, count - 1);
-    return first <= last;
+GridBox pixels_between(const std::array<ScreenVertex, N>& corners, const PixelGrid& grid) {
+  const auto first = [](std::int32_t low, int count) {
+    return std::max((low + count / 2 * subpixels + subpixels / 2 - 1) >> subpixel_bits, 0);
+  };
+  const auto last = [](std::int32_t high, int count) {
+    return std::min((high + count / 2 * subpixels - subpixels / 2) >> subpixel_bits, count - 1);
   };
   std::int32_t left = corners[0].column, right = left, top = corners[0].row, bottom = top;
   for (std::size_t k = 1; k < N; ++k) {
@@ -62,7 +68,11 @@ bool meets_pixel(const std::array<ScreenVertex, N>& corners, const PixelGrid& gr
     top = std::min(top, corners[k].row);
     bottom = std::max(bottom, corners[k].row);
   }
-  return between(left, right, grid.columns) && between(top, bottom, grid.rows);
+  return {first(left, grid.columns), last(right, grid.columns), first(top, grid.rows), last(bottom, grid.rows)};
+}
+template <std::size_t N>
+bool meets_pixel(const std::array<ScreenVertex, N>& corners, const PixelGrid& grid) {
+  return !pixels_between(corners, grid).empty();
 }
 
 // What all cells of a picture have in common.

@@ -36,6 +36,7 @@ StateGuard::StateGuard() {
   glGetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
   clear_stencil_ = integer(GL_STENCIL_CLEAR_VALUE);
   depth_function_ = integer(GL_DEPTH_FUNC);
+  glGetFloatv(GL_DEPTH_RANGE, depth_range_.data());
   glGetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
   draw_framebuffer_ = integer(GL_DRAW_FRAMEBUFFER_BINDING);
   read_framebuffer_ = integer(GL_READ_FRAMEBUFFER_BINDING);
@@ -44,6 +45,9 @@ StateGuard::StateGuard() {
   array_buffer_ = integer(GL_ARRAY_BUFFER_BINDING);
   pack_buffer_ = integer(GL_PIXEL_PACK_BUFFER_BINDING);
   pack_alignment_ = integer(GL_PACK_ALIGNMENT);
+  unpack_buffer_ = integer(GL_PIXEL_UNPACK_BUFFER_BINDING);
+  unpack_alignment_ = integer(GL_UNPACK_ALIGNMENT);
+  unpack_row_length_ = integer(GL_UNPACK_ROW_LENGTH);
 }
 
 StateGuard::~StateGuard() {
@@ -73,6 +77,7 @@ StateGuard::~StateGuard() {
   glClearDepth(static_cast<GLdouble>(clear_depth_));
   glClearStencil(clear_stencil_);
   glDepthFunc(name(depth_function_));
+  glDepthRangef(depth_range_[0], depth_range_[1]);
   glDepthMask(depth_mask_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(draw_framebuffer_));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, name(read_framebuffer_));
@@ -81,6 +86,9 @@ StateGuard::~StateGuard() {
   glBindBuffer(GL_ARRAY_BUFFER, name(array_buffer_));
   glBindBuffer(GL_PIXEL_PACK_BUFFER, name(pack_buffer_));
   glPixelStorei(GL_PACK_ALIGNMENT, pack_alignment_);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, name(unpack_buffer_));
+  glPixelStorei(GL_UNPACK_ALIGNMENT, unpack_alignment_);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, unpack_row_length_);
 }
 
 }  // namespace atomesh::gl

@@ -17,7 +17,7 @@ class StateGuard {
   StateGuard& operator=(const StateGuard&) = delete;
 
  private:
-  static constexpr int texture_units = 9;
+  static constexpr int texture_units = 10;
   static constexpr std::array<GLenum, 8> switches_{GL_BLEND,     GL_DEPTH_TEST,  GL_STENCIL_TEST, GL_SCISSOR_TEST,
                                                    GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DITHER,       GL_MULTISAMPLE};
   std::array<bool, switches_.size()> enabled_{};
@@ -40,6 +40,7 @@ class StateGuard {
   GLfloat clear_depth_ = 1.0F;
   GLint clear_stencil_ = 0;
   GLint depth_function_ = 0;
+  std::array<GLfloat, 2> depth_range_{};
   GLboolean depth_mask_ = GL_TRUE;
   GLint draw_framebuffer_ = 0;
   GLint read_framebuffer_ = 0;
@@ -48,6 +49,9 @@ class StateGuard {
   GLint array_buffer_ = 0;
   GLint pack_buffer_ = 0;
   GLint pack_alignment_ = 4;
+  GLint unpack_buffer_ = 0;
+  GLint unpack_alignment_ = 4;
+  GLint unpack_row_length_ = 0;
   GLint active_texture_ = 0;
 };
 

@@ -35,6 +35,21 @@ GLint integer(GLenum name) {
   return value;
 }
 
+// Those of `count` cells that are not among `cells`, which ascend.
+std::vector<Index> cells_beside(std::span<const Index> cells, std::size_t count) {
+  std::vector<Index> others;
+  others.reserve(count - cells.size());
+  std::size_t next = 0;
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    if (next < cells.size() && cells[next] == cell) {
+      ++next;
+    } else {
+      others.push_back(static_cast<Index>(cell));
+    }
+  }
+  return others;
+}
+
 bool same(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.right == b.right && a.up == b.up && a.forward == b.forward && a.projection == b.projection;
 }
@@ -56,6 +71,7 @@ Volume::Volume() : driver_(current_driver()) {
 
 Volume::Programs Volume::make_programs(std::string_view fragment_file, std::vector<std::string> defines) const {
   Programs programs;
+  if (rays_end_) defines.emplace_back("RAY_ENDS");
   programs.parallel = Program::draw("cells.vert", fragment_file, defines);
   defines.emplace_back("PERSPECTIVE");
   programs.perspective = Program::draw("cells.vert", fragment_file, defines);
@@ -76,6 +92,31 @@ void Volume::make_repair(const HavsParameters& parameters) {
   gather_ = make_programs(repair_->fragment_shader(), repair_->defines());
 }
 
+// Texture of unit 9: w (ScreenVertex) of each pixel's ray's end.
+void Volume::end_rays(std::span<const float> ray_ends) {
+  if (rays_end_ == ray_ends.empty()) {
+    rays_end_ = !ray_ends.empty();
+    blend_ = make_programs("blend.frag", {});
+    repair_.reset();
+  }
+  if (!rays_end_) return;
+  if (ray_ends_.width() < columns_ || ray_ends_.height() < rows_) {
+    ray_ends_ = Texture::make_2d(GL_R32F, std::max(columns_, ray_ends_.width()), std::max(rows_, ray_ends_.height()));
+  }
+  const ScreenView& view = mesh_->view();
+  std::vector<float> ends(ray_ends.size());
+  std::transform(ray_ends.begin(), ray_ends.end(), ends.begin(), [&](float depth) {
+    const auto z = static_cast<double>(depth);
+    const double w = view.perspective ? -view.reference / z : z - view.reference;
+    return static_cast<float>(std::min(w, static_cast<double>(view.last_w)));
+  });
+  ray_ends_.bind(9);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns_, rows_, GL_RED, GL_FLOAT, ends.data());
+}
+
 void Volume::set_scene(const Scene& scene) {
   scene_ = &scene;
   view_.reset();
@@ -94,10 +135,14 @@ void Volume::find_cells(const Camera& camera, const PixelGrid& grid, const Param
                                        cell_projection::MapIntervals(parameters.volume.color_map), progress);
   last_.project_ms = ms_since(start);
   const Clock::time_point sorting = Clock::now();
-  if (!order_) order_ = std::make_unique<CellOrder>(*scene_, false);
+  // By faces there is hardly a pixel to repair, but it takes one core 50 ms for a million cells: a card repairs the few
+  // pixels that a Delaunay mesh's keys leave sooner.
+  if (!order_) order_ = std::make_unique<CellOrder>(*scene_, driver_.software || !scene_->delaunay);
   std::vector<Index> order;
   CellOrderStats order_stats;
-  order_->sort(camera, mesh_->cells(), {}, order, order_stats);
+  const std::vector<Index> unseen =
+      order_->by_faces() ? cells_beside(mesh_->cells(), scene_->tetrahedra.size()) : std::vector<Index>();
+  order_->sort(camera, mesh_->cells(), unseen, order, order_stats);
   parts_ = mesh_->parts(order);
   last_.order_ms = ms_since(sorting);
   last_.cells = order.size();
@@ -106,7 +151,6 @@ void Volume::find_cells(const Camera& camera, const PixelGrid& grid, const Param
 }
 
 void Volume::fill(Slab& slab, std::span<const Index> parts) {
-  const Clock::time_point start = Clock::now();
   const std::size_t shares = (parts.size() + cells_per_share - 1) / cells_per_share;
   slab.vertices.reserve(slab_bytes, GL_STREAM_DRAW);
   slab.first.resize(shares);
@@ -129,7 +173,6 @@ void Volume::fill(Slab& slab, std::span<const Index> parts) {
     slab.count[begin / cells_per_share] = static_cast<GLsizei>(3 * triangles);
   });
   glUnmapBuffer(GL_ARRAY_BUFFER);
-  last_.faces_ms += ms_since(start);
 }
 
 void Volume::resize(int columns, int rows) {
@@ -141,7 +184,7 @@ void Volume::resize(int columns, int rows) {
   color_ = Texture();
   depth_ = Texture();
   color_ = Texture::make_2d(GL_RGBA32F, width, height);
-  depth_ = Texture::make_2d(GL_DEPTH32F_STENCIL8, width, height);
+  depth_ = Texture::make_2d(GL_DEPTH24_STENCIL8, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.name(), 0);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
@@ -167,7 +210,47 @@ void Volume::use(const Programs& programs) const {
               static_cast<GLfloat>(grid.y + 0.5 * grid.dy), static_cast<GLfloat>(grid.dx),
               static_cast<GLfloat>(-grid.dy));
   table_.bind();
+  if (rays_end_) ray_ends_.bind(9);
   glBindVertexArray(vertex_array_.name());
+}
+
+void Volume::draw_slab(const Slab& slab) const {
+  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
+  glEnableVertexAttribArray(0);
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
+  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
+                        reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
+  glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+}
+
+// What a repair asks for: of the parts those alone that lie where pixels are marked.
+void Volume::draw_marked(const Progress& progress) {
+  const MarkedTiles& tiles = repair_->tiles();
+  const PixelGrid& grid = mesh_->view().grid;
+  std::vector<std::vector<Index>> found((parts_.size() + cells_per_slab - 1) / cells_per_slab);
+  parallel_for(parts_.size(), cells_per_slab, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    std::vector<Index>& near = found[begin / cells_per_slab];
+    for (std::size_t i = begin; i < end; ++i) {
+      const GridBox box = pixels_between(mesh_->corners(parts_[i]), grid);
+      if (tiles.meets(box.left, box.right, box.top, box.bottom)) near.push_back(parts_[i]);
+    }
+  });
+  std::vector<Index> near;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    near.insert(near.end(), found[n].begin(), found[n].end());
+    // A slab that is full, and the last one.
+    std::size_t drawn = 0;
+    while (near.size() - drawn >= cells_per_slab || (n + 1 == found.size() && near.size() > drawn)) {
+      progress.check();
+      const std::size_t count = std::min(cells_per_slab, near.size() - drawn);
+      fill(marked_, std::span(near).subspan(drawn, count));
+      draw_slab(marked_);
+      drawn += count;
+    }
+    near.erase(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(drawn));
+  }
 }
 
 template <class After>
@@ -179,15 +262,11 @@ void Volume::draw_slabs(After&& after) {
     Slab& slab = slabs_[keep ? n : 0];
     if (!slabs_kept_) {
       const std::size_t begin = n * cells_per_slab;
+      const Clock::time_point start = Clock::now();
       fill(slab, std::span(parts_).subspan(begin, std::min(cells_per_slab, parts_.size() - begin)));
+      last_.faces_ms += ms_since(start);
     }
-    glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
-    glEnableVertexAttribArray(0);
-    glEnableVertexAttribArray(1);
-    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
-    glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
-                          reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
-    glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+    draw_slab(slab);
     after(slab, static_cast<double>(n + 1) / static_cast<double>(count));
   }
   slabs_kept_ = keep;
@@ -213,6 +292,8 @@ void Volume::set_blending(bool check_order) {
   glBlendEquation(GL_FUNC_ADD);
   glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
   glDisable(GL_CULL_FACE);
+  // Steps of 1/4096 of the sample: where cells follow one another, rounding turns no two round.
+  glDepthRangef(0.0F, 1.0F / 4096.0F);
   glEnable(GL_DEPTH_CLAMP);  // what rounding puts before the first depth or behind the last
   (check_order ? glEnable : glDisable)(GL_DEPTH_TEST);
   (check_order ? glEnable : glDisable)(GL_STENCIL_TEST);
@@ -222,7 +303,8 @@ void Volume::set_blending(bool check_order) {
 }
 
 void Volume::draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window,
-                  const PixelLattice& lattice, RenderStats& stats, Progress& progress) {
+                  const PixelLattice& lattice, RenderStats& stats, Progress& progress,
+                  std::span<const float> ray_ends) {
   const Clock::time_point start = Clock::now();
   const StateGuard guard;
   const PixelGrid grid = pixel_grid(camera, window, lattice);
@@ -231,6 +313,7 @@ void Volume::draw(const Camera& camera, const Parameters& parameters, const Pixe
   last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
   if (!same_view(camera, grid, parameters)) find_cells(camera, grid, parameters, progress);
   table_.update(parameters.volume.color_map, parameters.volume.alpha_length);
+  end_rays(ray_ends);
   const bool check_order = parameters.havs.order != HavsOrder::none;
   if (check_order) make_repair(parameters.havs);
   stats.setup_ms += ms_since(start);
@@ -248,7 +331,7 @@ void Volume::draw(const Camera& camera, const Parameters& parameters, const Pixe
   if (check_order) {
     const auto gather = [&] {
       use(gather_);
-      draw_slabs([&](const Slab&, double) { progress.check(); });
+      draw_marked(progress);
     };
     repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
   }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/camera.h"
@@ -45,9 +46,10 @@ class Volume {
   // Draws the lattice's pixels of the window, as a picture of their own; neither side more than largest_side(). What
   // was found for the same view is used again: the cells are not projected and sorted anew when nothing but colours
   // changes. Adds to `stats`; waits for OpenGL to finish. Throws CancelledError, UnavailableError (no memory, a lost
-  // context).
+  // context). `ray_ends`: of each of these pixels the depth where its ray ends (Channels::ray_end); empty where none
+  // does.
   void draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window, const PixelLattice& lattice,
-            RenderStats& stats, Progress& progress);
+            RenderStats& stats, Progress& progress, std::span<const float> ray_ends = {});
 
   int largest_side() const { return largest_side_; }
   const VolumeStats& last() const { return last_; }
@@ -82,14 +84,17 @@ class Volume {
   void find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters, const Progress& progress);
   Programs make_programs(std::string_view fragment_file, std::vector<std::string> defines) const;
   void make_repair(const HavsParameters& parameters);
+  void end_rays(std::span<const float> ray_ends);
   void fill(Slab& slab, std::span<const Index> parts);
   void resize(int columns, int rows);
   void clear_picture() const;
   static void set_blending(bool check_order);
   void use(const Programs& programs) const;
+  void draw_slab(const Slab& slab) const;
   // Calls after(n of all) after each slab.
   template <class After>
   void draw_slabs(After&& after);
+  void draw_marked(const Progress& progress);
 
   Driver driver_;
   int largest_side_ = 0;
@@ -102,6 +107,9 @@ class Volume {
   std::vector<Index> parts_;  // in order
   std::vector<Slab> slabs_;
   bool slabs_kept_ = false;  // slabs_ hold all parts
+  Slab marked_;              // of a repair
+  bool rays_end_ = false;    // the programs ask for where rays end
+  Texture ray_ends_;
   Programs blend_;
   std::unique_ptr<OrderRepair> repair_;
   Programs gather_;  // of repair_

@@ -8,10 +8,17 @@ uniform float reference;  // ScreenView::reference
 uniform float last_w;     // ScreenView::last_w
 uniform vec4 direction;   // x and y of the image plane at the fragment = direction.xy + direction.zw · gl_FragCoord.xy
 
+#ifdef RAY_ENDS
+layout(binding = 9) uniform sampler2D ray_ends;  // w where something opaque ends each pixel's ray
+#endif
+
 vec4 cell_light() {
   float w = way_at.x;
   // Never farther than the farthest vertex: far outside of thin triangles rounding makes anything.
   float way = clamp(min(min(entry_at.y, entry_at.z), entry_at.w), 0.0, last_w - w);
+#ifdef RAY_ENDS
+  way = clamp(texelFetch(ray_ends, ivec2(gl_FragCoord.xy), 0).x - w, 0.0, way);
+#endif
   float u = entry_at.x;
   float far_u = u + way_at.y * way;
 #ifdef PERSPECTIVE

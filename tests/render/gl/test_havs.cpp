@@ -81,6 +81,23 @@ TEST_P(Havs, DrawsFromInsideTheSample) {
   EXPECT_GE(difference.psnr, 55.0);
 }
 
+TEST_P(Havs, EndsRaysAtWhatStandsInTheVolume) {
+  for (const VolumeSolid solid : {VolumeSolid::atoms, VolumeSolid::walls}) {
+    Subject subject = subject_of(GetParam(), 120, 90);
+    subject.parameters.volume.solid = solid;
+    subject.parameters.atoms.scale = 0.3;
+    subject.scene = make_scene(subject.material, subject.parameters);
+    const Drawn drawn = draw(find_renderer("havs"), subject.scene, subject.camera, subject.parameters);
+    const Drawn judged = draw(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters);
+    const ImageDifference difference = compare_images(drawn.image, judged.image);
+    EXPECT_LE(difference.max, 4.0 / 255.0);
+    EXPECT_GE(difference.psnr, 55.0);
+    Subject empty = subject_of(GetParam(), 120, 90);
+    const Drawn without = draw(find_renderer("havs"), empty.scene, empty.camera, empty.parameters);
+    EXPECT_GT(compare_images(without.image, drawn.image).max, 0.2);
+  }
+}
+
 TEST(HavsRenderer, NamesWhoDrawsTheOtherModes) {
   for (const Mode mode : all_modes) {
     if (mode == Mode::volume) continue;
