@@ -304,6 +304,15 @@ void add_quality(Table& t) {
       "havs.memory", ParameterType::integer, "Memory for order", "MB", 1, 65536,
       "What lists or k-buffers may take; with less the cells are drawn more often.",
       [](Parameters & p) -> auto& { return p.havs.memory; });
+  t.choice(
+      "havs.integration", "Integration on OpenGL", {"auto", "exact", "table"},
+      "Of the renderer havs: how a ray's segment in a cell is integrated. exact: closed form, with every bend of the "
+      "color map. table: looked up in a pre-integration table. auto: what is faster with this driver.",
+      [](Parameters & p) -> auto& { return p.havs.integration; });
+  t.real(
+      "havs.table_error", "Error of the table", "", 1e-5, 0.1,
+      "Of a segment's color and opacity. Where no table is so accurate (maps that jump), integration is exact.",
+      [](Parameters & p) -> auto& { return p.havs.table_error; });
 }
 
 }  // namespace

@@ -98,10 +98,15 @@ struct VolumeParameters {
 //   k_buffer: they go through a buffer that keeps k of them; pixels that are too far out of order for it stay wrong
 //   none: nothing
 enum class HavsOrder { lists, k_buffer, none };
+// Of the same: how a ray's segment in a cell is integrated. exact: closed form, every knot of the colour map counts;
+// table: looked up in a pre-integration table; automatic: the faster one of the two on this driver.
+enum class HavsIntegration { automatic, exact, table };
 struct HavsParameters {
   HavsOrder order = HavsOrder::lists;
   int k = 16;
   int memory = 256;  // MB, for lists or buffers; with less the cells are drawn more often
+  HavsIntegration integration = HavsIntegration::automatic;
+  double table_error = 0.001;  // of a segment's colour; where no table is so accurate, exact is taken
   bool operator==(const HavsParameters&) const = default;
 };
 

@@ -2,7 +2,8 @@
 // for). The other modes are the renderer "cpu"'s: UsageError. Throws UnavailableError where there is no sufficient
 // OpenGL.
 //
-// Not to the last bit what Frame promises, but to rounding: of windows, lattices and threads.
+// Not to the last bit what Frame promises: to rounding for windows (half floats, 2^-12, where the order of cells was
+// repaired), and for lattices to what a vertex moved by 1/512 of the lattice's step changes.
 #pragma once
 
 #include "render/renderer.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 
 #include "core/error.h"
@@ -50,6 +51,25 @@ std::vector<Index> cells_beside(std::span<const Index> cells, std::size_t count)
   return others;
 }
 
+// No segment is longer.
+double longest_edge(const Scene& scene) {
+  std::vector<float> longest((scene.tetrahedra.size() + cells_per_share - 1) / cells_per_share);
+  parallel_for(scene.tetrahedra.size(), cells_per_share, [&](std::size_t begin, std::size_t end) {
+    float most = 0.0F;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tetrahedron& t = scene.tetrahedra[i];
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = a + 1; b < 4; ++b) {
+          const Vec3f edge = scene.vertices[t[b]] - scene.vertices[t[a]];
+          most = std::max(most, glm::dot(edge, edge));
+        }
+      }
+    }
+    longest[begin / cells_per_share] = std::sqrt(most);
+  });
+  return longest.empty() ? 0.0 : static_cast<double>(*std::max_element(longest.begin(), longest.end()));
+}
+
 bool same(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.right == b.right && a.up == b.up && a.forward == b.forward && a.projection == b.projection;
 }
@@ -71,11 +91,28 @@ Volume::Volume() : driver_(current_driver()) {
 
 Volume::Programs Volume::make_programs(std::string_view fragment_file, std::vector<std::string> defines) const {
   Programs programs;
-  if (rays_end_) defines.emplace_back("RAY_ENDS");
+  if (with_table_) defines.emplace_back("TABLE");
+  if (with_ray_ends_) defines.emplace_back("RAY_ENDS");
   programs.parallel = Program::draw("cells.vert", fragment_file, defines);
   defines.emplace_back("PERSPECTIVE");
   programs.perspective = Program::draw("cells.vert", fragment_file, defines);
   return programs;
+}
+
+bool Volume::make_table(const Parameters& parameters) {
+  table_.update(parameters.volume.color_map, parameters.volume.alpha_length);
+  if (parameters.havs.integration == HavsIntegration::exact) return false;
+  if (parameters.havs.integration == HavsIntegration::automatic && driver_.software) return false;
+  if (!(longest_segment_ > 0.0)) longest_segment_ = longest_edge(*scene_);
+  return table_.make_table(longest_segment_, parameters.havs.table_error);
+}
+
+void Volume::choose_programs(bool table, bool rays_end) {
+  if (with_table_ == table && with_ray_ends_ == rays_end) return;
+  with_table_ = table;
+  with_ray_ends_ = rays_end;
+  blend_ = make_programs("blend.frag", {});
+  repair_.reset();
 }
 
 void Volume::make_repair(const HavsParameters& parameters) {
@@ -94,12 +131,7 @@ void Volume::make_repair(const HavsParameters& parameters) {
 
 // Texture of unit 9: w (ScreenVertex) of each pixel's ray's end.
 void Volume::end_rays(std::span<const float> ray_ends) {
-  if (rays_end_ == ray_ends.empty()) {
-    rays_end_ = !ray_ends.empty();
-    blend_ = make_programs("blend.frag", {});
-    repair_.reset();
-  }
-  if (!rays_end_) return;
+  if (ray_ends.empty()) return;
   if (ray_ends_.width() < columns_ || ray_ends_.height() < rows_) {
     ray_ends_ = Texture::make_2d(GL_R32F, std::max(columns_, ray_ends_.width()), std::max(rows_, ray_ends_.height()));
   }
@@ -121,6 +153,7 @@ void Volume::set_scene(const Scene& scene) {
   scene_ = &scene;
   view_.reset();
   order_.reset();
+  longest_segment_ = 0.0;
 }
 
 bool Volume::same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const {
@@ -210,7 +243,7 @@ void Volume::use(const Programs& programs) const {
               static_cast<GLfloat>(grid.y + 0.5 * grid.dy), static_cast<GLfloat>(grid.dx),
               static_cast<GLfloat>(-grid.dy));
   table_.bind();
-  if (rays_end_) ray_ends_.bind(9);
+  if (with_ray_ends_) ray_ends_.bind(9);
   glBindVertexArray(vertex_array_.name());
 }
 
@@ -312,7 +345,7 @@ void Volume::draw(const Camera& camera, const Parameters& parameters, const Pixe
   if (grid.columns == 0 || grid.rows == 0) return;
   last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
   if (!same_view(camera, grid, parameters)) find_cells(camera, grid, parameters, progress);
-  table_.update(parameters.volume.color_map, parameters.volume.alpha_length);
+  choose_programs(make_table(parameters), !ray_ends.empty());
   end_rays(ray_ends);
   const bool check_order = parameters.havs.order != HavsOrder::none;
   if (check_order) make_repair(parameters.havs);

@@ -83,6 +83,9 @@ class Volume {
   bool same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const;
   void find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters, const Progress& progress);
   Programs make_programs(std::string_view fragment_file, std::vector<std::string> defines) const;
+  // Whether the table is to be used, which is then ready.
+  bool make_table(const Parameters& parameters);
+  void choose_programs(bool table, bool rays_end);
   void make_repair(const HavsParameters& parameters);
   void end_rays(std::span<const float> ray_ends);
   void fill(Slab& slab, std::span<const Index> parts);
@@ -106,10 +109,13 @@ class Volume {
   PreintegrationTable table_;
   std::vector<Index> parts_;  // in order
   std::vector<Slab> slabs_;
-  bool slabs_kept_ = false;  // slabs_ hold all parts
-  Slab marked_;              // of a repair
-  bool rays_end_ = false;    // the programs ask for where rays end
+  bool slabs_kept_ = false;       // slabs_ hold all parts
+  Slab marked_;                   // of a repair
+  double longest_segment_ = 0.0;  // Å; of the scene, 0 while unknown
   Texture ray_ends_;
+  // The programs look segments up in the table; ask for where rays end.
+  bool with_table_ = false;
+  bool with_ray_ends_ = false;
   Programs blend_;
   std::unique_ptr<OrderRepair> repair_;
   Programs gather_;  // of repair_

@@ -32,7 +32,7 @@ TEST(Parameters, TableNamesEveryKeyOnceAndExplainsIt) {
     EXPECT_TRUE(row.help.ends_with('.')) << row.key;
     EXPECT_EQ(row.type == ParameterType::choice, !row.choices.empty()) << row.key;
   }
-  EXPECT_EQ(keys.size(), 3U + 8 * 4 + 8 * 4 + 13 + 4 + 9 + 2 + 6 + 7 + 3);
+  EXPECT_EQ(keys.size(), 3U + 8 * 4 + 8 * 4 + 13 + 4 + 9 + 2 + 6 + 7 + 8);
 }
 
 TEST(Parameters, DefaultsAreWithinTheirOwnRanges) {
