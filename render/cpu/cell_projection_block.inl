@@ -140,7 +140,7 @@ constexpr std::uint32_t planes_ahead = 12;
 constexpr std::uint32_t values_ahead = 6;
 
 template <class Record>
-static inline void prefetch(const Record& record) {
+static inline __attribute__((always_inline)) void prefetch(const Record& record) {
   const char* bytes = reinterpret_cast<const char*>(&record);
   for (std::size_t at = 0; at < sizeof(Record); at += 64) __builtin_prefetch(bytes + at);
 }
@@ -299,7 +299,7 @@ static inline std::uint64_t compose_in_order(const Integrator& integrator, Layer
   };
   for (std::uint32_t n = 0; n < count;) {
     const std::uint32_t* const next = scratch.order + n;
-    const auto ahead = [&](std::uint32_t by) {
+    const auto ahead = [&](std::uint32_t by) __attribute__((always_inline)) {
       if (n + by < count) prefetch(integrator.record(scratch.record[next[by]]));
     };
     if constexpr (!together) {

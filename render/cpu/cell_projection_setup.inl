@@ -234,7 +234,7 @@ static inline void load_group(const SetupInput& input, std::size_t first, CellGr
 #endif
 
 // Corners, then what they name, are asked for some cells ahead.
-static inline void prefetch_groups(const SetupInput& input, std::size_t first) {
+static inline __attribute__((always_inline)) void prefetch_groups(const SetupInput& input, std::size_t first) {
   for (std::size_t near = first + 8; near < first + 8 + group_size && near < input.count; ++near) {
     if (near + 8 < input.count) {
       __builtin_prefetch(input.corners + 4 * static_cast<std::size_t>(input.cells[near + 8]));
