@@ -330,6 +330,10 @@ class CellProjectionFrame final : public Frame {
       CellScalar& scalar = tile.scalars[n];
       scalar.first_interval = intervals_.find(scalar.low);
       scalar.last_interval = intervals_.find(scalar.high);
+      const MapInterval& next = intervals_.data()[scalar.first_interval + 1];
+      // The difference of two floats that are near each other is exact.
+      scalar.knot = next.begin - scalar.reference + next.begin_rest;
+      scalar.thin_length = intervals_.thin_length(scalar.first_interval, scalar.last_interval);
     }
   }
 

@@ -65,17 +65,11 @@ class Order {
   Lanes last_{-3e38F};
 };
 
-// Rays that let next to nothing through are finished: what lies behind adds nothing to them, whenever it comes.
-static inline void finish_opaque(Light& light) {
-  light.through = select(light.through > Lanes(opaque_enough), light.through, Lanes(0.0F));
-}
-
 // Lays one cell behind what is in `light`, and the layers before it.
 template <class Integrator>
 static inline void compose(const Integrator& integrator, Layers& layers, std::uint32_t record, const Lanes& u_in,
                            const Lanes& u_out, unsigned lanes, Light& light) {
   layers.lay_before(u_in, u_out, lanes, light);
-  finish_opaque(light);
   if constexpr (Integrator::prepares) {
     typename Integrator::Prepared prepared;
     integrator.prepare(record, u_in, u_out, prepared);
@@ -127,7 +121,7 @@ static __attribute__((noinline)) std::uint64_t compose_cyclic(const Integrator& 
       ++next[lane];
     }
     const Lanes u_in = load(scratch.u_in + 16 * n);
-    const Lanes u_out = select(mask_of(lanes), load(scratch.u_out + 16 * n), min(u_in, load(scratch.u_out + 16 * n)));
+    const Lanes u_out = select(mask_of(lanes), load(scratch.u_out + 16 * n), u_in);
     compose(integrator, layers, scratch.record[n], u_in, u_out, lanes, light);
     steps += static_cast<unsigned>(__builtin_popcount(lanes));
   }
@@ -222,8 +216,8 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
     const unsigned met = bits(lanes);
     // Which cells meet a ray follows no pattern that a branch could learn: every cell is noted, and those that meet
     // none are overwritten by the next.
-    store(all_in + 16 * count, u_in);
-    store(all_out + 16 * count, select(lanes, u_out, min(u_in, u_out)));
+    store(all_in + 16 * count, select(lanes, u_in, Lanes(0.0F)));
+    store(all_out + 16 * count, select(lanes, u_out, Lanes(0.0F)));
     all_lanes[count] = met | (met | (p.wild ? all_of_them : 0U)) << lane_count;
     records[count] = record;
     if (sorted) sorted = order.add(lists, count, u_in, lanes);
@@ -283,7 +277,6 @@ static inline void compose_together(const Integrator& integrator, Layers& layers
     u_out = select(rays[n], load(scratch.u_out + 16 * next[n]), u_out);
   }
   layers.lay_before(u_in, u_out, lanes, light);
-  finish_opaque(light);
   integrator.template lay<together>(records, rays, u_in, u_out, light);
   finish_opaque(light);
 }
@@ -371,7 +364,6 @@ static __attribute__((flatten)) std::uint64_t draw_block_with(const View& view, 
     steps = compose_in_order(integrator, layers, scratch, count, light);
   }
   layers.lay_rest(light);
-  finish_opaque(light);
   steps += layers.steps();
   alignas(64) float channels[4][lane_count];
   store(channels[0], light.red);

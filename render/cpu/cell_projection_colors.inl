@@ -38,18 +38,16 @@ class BlockOptics {
     return {scale * (u_in * far_side), scale * (u_out - u_in)};
   }
 
-  // Of a segment, u_in < u_out where there is one: its ends' depths from the cell's own, and alpha_length times the
-  // way, zero where there is none (where the depths are finite all the same).
-  struct Way {
-    Lanes z_in, z_out, length;
+  // The same with twice its middle's z - z_ref.
+  struct Middle {
+    Lanes twice_z, depth;
   };
-  Way way(const Lanes& u_in, const Lanes& u_out, float cell_depth) const {
-    const Lanes depth(cell_depth);
-    Way w;
-    w.z_in = relative_depth(min(u_in, u_out)) - depth;
-    w.z_out = relative_depth(u_out) - depth;
-    w.length = select(u_in < u_out, (w.z_out - w.z_in) * extinction_, Lanes(0.0F));
-    return w;
+  Middle middle(const Lanes& u_in, const Lanes& u_out) const {
+    if (!perspective_) return {u_in + u_out, u_out - u_in};
+    const Lanes near_side = Lanes(1.0F) - u_in;
+    const Lanes far_side = Lanes(1.0F) - u_out;
+    const Lanes scale = reference_ * reciprocal(near_side * far_side);
+    return {scale * multiply_add(u_out, near_side, u_in * far_side), scale * (u_out - u_in)};
   }
 
   const CellOptics& optics_;
@@ -71,8 +69,7 @@ class ColorIntegrator : public BlockOptics {
         colors_(block.colors),
         ranges_(block.ranges),
         from_eye_(view.perspective ? static_cast<float>(view.reference) : 1.0F),
-        widening_(view.perspective ? 1.0F : 0.0F),
-        farthest_(view.farthest) {}
+        widening_(view.perspective ? 1.0F : 0.0F) {}
 
   static constexpr bool prepares = false;
   using Record = CellColors;
@@ -96,8 +93,7 @@ class ColorIntegrator : public BlockOptics {
       for (int n = 1; n < count; ++n) value = select(rays[n], Lanes((cells[n]->*channels)[k]), value);
       return value;
     };
-    const Lanes begin = min(u_in, farthest_);
-    const Stretch s = stretch(begin, max(begin, u_out));
+    const Stretch s = stretch(u_in, u_out);
     const Lanes z_in = s.z_in - depth;
     const Lanes h_in = multiply_add(s.z_in, widening_, from_eye_);
     Rgba near_end;
@@ -137,7 +133,6 @@ class ColorIntegrator : public BlockOptics {
   const CellColors* colors_;
   const ColorRange* ranges_;
   Lanes from_eye_, widening_;  // h = from_eye + widening (z - z_ref)
-  Lanes farthest_;
 };
 
 }  // namespace atomesh::ATOMESH_ISA

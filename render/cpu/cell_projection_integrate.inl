@@ -11,7 +11,7 @@ struct TypeOf {
 //   I(view, optics, block, pixels)
 //   record(n)                        what it reads of the tile's cell n
 //   compose(n, u_in, u_out, light)   lays the segment of cell n, u_in < u_out, behind what is in `light`; lanes with
-//                                    u_in >= u_out, or through which no light comes, keep theirs
+//                                    u_in == u_out, or through which no light comes, keep theirs
 // or, where `prepares` is true, instead of compose() its two steps:
 //   prepare(n, u_in, u_out, p)       fills a Prepared with what does not depend on the light
 //   lay(n, p, light)                 lays it

@@ -100,11 +100,15 @@ struct alignas(64) CellScalar {
   float base_a, base_b, base_c;
   float slope_a, slope_b, slope_c;  // half the slope
   float column, row;
-  float depth;  // z_cell - z_ref
+  float twice_depth;  // 2 (z_cell - z_ref)
   float low, high;
-  float reference;               // the mean of the vertices'
-  std::uint16_t first_interval;  // of the colour map, that the cell's scalars touch
+  float reference;  // the mean of the vertices'
+  // Of the colour map: the intervals that the cell's scalars touch, where the second of them begins (or the one behind
+  // them), counted from `reference`, and the least of their MapInterval::thin_length.
+  std::uint16_t first_interval;
   std::uint16_t last_interval;
+  float knot;
+  float thin_length;
   std::uint32_t wild;
 };
 
@@ -163,7 +167,7 @@ struct SetupOutput {
   CellRefinement* refinements;  // where the planes say that there is one
   CellColors* colors;           // where values are RGBA
   ColorRange* ranges;           // of those that are wild
-  CellScalar* scalars;          // this where they are scalars, all but its intervals
+  CellScalar* scalars;          // this where they are scalars, all but what it has of the colour map
   double* keys;                 // ascending: front to back
   BlockSet* blocks;  // wanted ones that the cell may cover a pixel of; where there are none the others are not filled
   std::uint32_t* per_block;  // how many cells each of the tile's blocks has
@@ -171,8 +175,8 @@ struct SetupOutput {
 
 // Lines of the lists that a block's cells pass through; sized by the driver for the longest list.
 struct BlockScratch {
-  float* u_in;           // 16 per cell
-  float* u_out;          // 16 per cell
+  float* u_in;           // 16 per cell, 0 on rays that do not meet it
+  float* u_out;          // the same
   std::uint32_t* lanes;  // per cell: pixels that meet it; 16 bits higher those that it shares with no cell laid with it
   std::uint32_t* record;  // per cell: which of the block's cells it is
   std::uint32_t* order;   // per cell

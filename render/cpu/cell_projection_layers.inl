@@ -32,7 +32,7 @@ class Layers {
     }
   }
 
-  // Lays what comes before the cell behind what is in `light`.
+  // Lays what comes before the cell behind what is in `light`, and finishes what it leaves opaque.
   void lay_before(const Lanes& u_in, const Lanes& u_out, unsigned lanes, Light& light) {
     if (block_.layers == nullptr) return;
     lay_up_to(u_in + u_out, lanes, light);
@@ -73,6 +73,7 @@ class Layers {
       if (optics_.has_medium) fill(load(stretch), light);
       absorb({{load(rgb[0]), load(rgb[1]), load(rgb[2]), Lanes(0.0F)}}, load(opacity), light);
     }
+    finish_opaque(light);
     return light;
   }
 
@@ -105,6 +106,7 @@ class Layers {
     for (int lane = 0; lane < lane_count; ++lane) hit[lane] = static_cast<float>(from_depth_[lane] - reference_);
     const Lanes from = select(mask_of(from_hit_), load(hit), rays_.relative_depth(load(from_)));
     fill(select(gap, max(rays_.relative_depth(u_in) - from, Lanes(0.0F)), Lanes(0.0F)), light);
+    finish_opaque(light);
     return light;
   }
 

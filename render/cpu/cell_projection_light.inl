@@ -35,6 +35,11 @@ static inline void take(const Lanes& taken, Light& light) {
   light.through = light.through - taken;
 }
 
+// Rays that let next to nothing through are finished: what lies behind adds nothing to them, whenever it comes.
+static inline void finish_opaque(Light& light) {
+  light.through = select(light.through > Lanes(opaque_enough), light.through, Lanes(0.0F));
+}
+
 static inline void absorb(const Rgba& color, const Lanes& opacity, Light& light) {
   const Lanes taken = light.through * opacity;
   light.red = multiply_add(taken, color.channel[0], light.red);

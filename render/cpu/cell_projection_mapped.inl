@@ -28,14 +28,13 @@ class MappedCells : public BlockOptics {
   void prepare(std::uint32_t number, const Lanes& u_in, const Lanes& u_out, Prepared& prepared) const {
     const CellScalar& cell = scalars_[number];
     const Mask met = u_in < u_out;
-    const Lanes z_in = relative_depth(min(u_in, u_out)) - Lanes(cell.depth);
-    const Lanes z_out = relative_depth(u_out) - Lanes(cell.depth);
-    const Lanes length = select(met, (z_out - z_in) * extinction(), Lanes(0.0F));
+    const Middle m = BlockOptics::middle(u_in, u_out);
+    const Lanes length = m.depth * extinction();
     const Pixels pixels{pixels_.column - Lanes(cell.column), pixels_.row - Lanes(cell.row)};
     const Lanes base = affine(pixels, cell.base_a, cell.base_b, cell.base_c);
     const Lanes slope = affine(pixels, cell.slope_a, cell.slope_b, cell.slope_c);
-    Lanes middle = multiply_add(z_in + z_out, slope, base);
-    Lanes half = (z_out - z_in) * slope;
+    Lanes middle = multiply_add(m.twice_z - Lanes(cell.twice_depth), slope, base);
+    Lanes half = m.depth * slope;
     if (cell.wild != 0) {
       const float low = cell.low - cell.reference;
       const float high = cell.high - cell.reference;
@@ -48,12 +47,8 @@ class MappedCells : public BlockOptics {
     prepared.half = half;
     prepared.length = length;
     const Lanes reach = magnitude(half);
-    const Intervals range = intervals(cell, middle - reach, middle + reach, met);
-    prepared.range = range;
-    const float first_thin = interval(range.first).thin_length;
-    const float last_thin = interval(range.last).thin_length;
-    prepared.thin =
-        range.last - range.first <= 1 && !any(length > Lanes(first_thin < last_thin ? first_thin : last_thin));
+    prepared.range = intervals(cell, middle - reach, middle + reach, met);
+    prepared.thin = !any(length > Lanes(cell.thin_length));
   }
 
  protected:
@@ -97,7 +92,7 @@ class MappedCells : public BlockOptics {
       return range;
     }
     // Where the cell touches one interval only, all lie below the next one.
-    const Lanes knot(begin_of(interval(range.first + 1), cell));
+    const Lanes knot(cell.knot);
     const int above = any(met & !(top < knot)) ? 1 : 0;
     range.last = range.first + above;
     range.first += any(met & (bottom < knot)) ? 0 : 1;

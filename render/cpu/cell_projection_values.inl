@@ -135,10 +135,25 @@ static inline void write_scalars(const View& view, const SetupInput& input, doub
   const Ints tame = (reach <= 64.0F * (high - low) + 1e-6F) & (distance > 4.0F * extent);
   const Floats columns = to_floats(column);
   const Floats rows = to_floats(row);
+  const Floats twice_depth = depth + depth;
   for (int l = 0; l < count; ++l) {
-    scalars[l] = {base_a[l],  base_b[l],    base_c[l], slope_a[l], slope_b[l],
-                  slope_c[l], columns[l],   rows[l],   depth[l],   low[l],
-                  high[l],    reference[l], 0,         0,          tame[l] == 0 ? 1U : 0U};
+    scalars[l] = {base_a[l],
+                  base_b[l],
+                  base_c[l],
+                  slope_a[l],
+                  slope_b[l],
+                  slope_c[l],
+                  columns[l],
+                  rows[l],
+                  twice_depth[l],
+                  low[l],
+                  high[l],
+                  reference[l],
+                  0,
+                  0,
+                  0.0F,
+                  0.0F,
+                  tame[l] == 0 ? 1U : 0U};
   }
 }
 

@@ -27,6 +27,12 @@ class MapIntervals {
     while (scalar >= intervals_[n + 1].begin) ++n;
     return static_cast<std::uint16_t>(n);
   }
+  // Of those from `first` to `last` the least thin_length.
+  float thin_length(std::uint16_t first, std::uint16_t last) const {
+    float least = intervals_[first].thin_length;
+    for (std::size_t n = first + std::size_t{1}; n <= last; ++n) least = std::min(least, intervals_[n].thin_length);
+    return least;
+  }
   // Whether some intervals have no opacity throughout.
   bool any_transparent() const { return opaque_before_.back() != static_cast<int>(size()); }
   // Whether no scalar from `low` to `high` has any opacity.
