@@ -130,8 +130,8 @@ static __attribute__((noinline)) std::uint64_t compose_cyclic(const Integrator& 
 }
 
 // A block's cells lie scattered over its tile's records: their cache lines are asked for a few cells ahead.
-constexpr std::uint32_t planes_ahead = 12;
-constexpr std::uint32_t values_ahead = 6;
+constexpr std::uint32_t planes_ahead = 24;
+constexpr std::uint32_t values_ahead = 16;
 
 template <class Record>
 static inline __attribute__((always_inline)) void prefetch(const Record& record) {
