@@ -329,7 +329,7 @@ class CellProjectionFrame final : public Frame {
       if (tile.blocks[n] == 0) continue;
       CellScalar& scalar = tile.scalars[n];
       scalar.first_interval = intervals_.find(scalar.low);
-      scalar.last_interval = intervals_.find(scalar.high);
+      scalar.last_interval = intervals_.find(scalar.high, scalar.first_interval);
       const MapInterval& next = intervals_.data()[scalar.first_interval + 1];
       // The difference of two floats that are near each other is exact.
       scalar.knot = next.begin - scalar.reference + next.begin_rest;

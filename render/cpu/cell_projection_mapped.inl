@@ -228,8 +228,47 @@ class MappedIntegrator : public MappedCells {
   void add_across(const CellScalar& cell, const Prepared& s, Light& light) const {
     const Mask falls = s.half < Lanes(0.0F);
     const Mask met = s.length > Lanes(0.0F);
+    const bool some_fall = any(met & falls);
+    if (s.range.last - s.range.first == 1 && !(some_fall && any(met & !falls))) {
+      add_two<thin>(cell, s, !some_fall, light);
+      return;
+    }
     if (any(met & !falls)) add_parts<true, thin>(cell, s, select(falls, Lanes(0.0F), s.length), light);
-    if (any(met & falls)) add_parts<false, thin>(cell, s, select(falls, s.length, Lanes(0.0F)), light);
+    if (some_fall) add_parts<false, thin>(cell, s, select(falls, s.length, Lanes(0.0F)), light);
+  }
+
+  // Two intervals, which all rays pass in one order: what add_parts() would add, in fewer instructions and with none
+  // that depends on the order but an address.
+  template <bool thin>
+  void add_two(const CellScalar& cell, const Prepared& s, bool up, Light& light) const {
+    const Lanes zero(0.0F);
+    const Lanes reach = magnitude(s.half);
+    const Lanes bottom = s.middle - reach;
+    const Lanes top = s.middle + reach;
+    const MapInterval* const map = &interval(s.range.first);
+    const Lanes begin(begin_of(map[0], cell));
+    const Lanes knot(begin_of(map[1], cell));
+    const Lanes share = min(Lanes(0.5F) * (knot - bottom) / reach, Lanes(1.0F));
+    const Mask some = bottom < knot;
+    const Mask all = top < knot;
+    const Mask passes = some & !all;
+    struct Part {
+      Lanes middle, half, length;
+    };
+    Part lower, upper;
+    lower.length = select(all, s.length, select(some, share * s.length, zero));
+    lower.half = select(all, s.half, select(some, share * s.half, zero));
+    upper.length = s.length - lower.length;
+    upper.half = s.half - lower.half;
+    lower.middle = select(passes, (knot - begin) - magnitude(lower.half), s.middle - begin);
+    upper.middle = select(passes, magnitude(upper.half), s.middle - knot);
+    if (up) {
+      add_piece<thin>(map[0], lower.middle, lower.half, lower.length, light);
+      add_piece<thin>(map[1], upper.middle, upper.half, upper.length, light);
+    } else {
+      add_piece<thin>(map[1], upper.middle, upper.half, upper.length, light);
+      add_piece<thin>(map[0], lower.middle, lower.half, lower.length, light);
+    }
   }
 
   // The segments along which the scalar rises, or those along which it falls; of the others `length` is zero. What

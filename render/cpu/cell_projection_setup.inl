@@ -235,9 +235,10 @@ static inline void load_group(const SetupInput& input, std::size_t first, CellGr
 
 // Corners, then what they name, are asked for some cells ahead.
 static inline __attribute__((always_inline)) void prefetch_groups(const SetupInput& input, std::size_t first) {
-  for (std::size_t near = first + 8; near < first + 8 + group_size && near < input.count; ++near) {
-    if (near + 8 < input.count) {
-      __builtin_prefetch(input.corners + 4 * static_cast<std::size_t>(input.cells[near + 8]));
+  constexpr std::size_t step = 16;
+  for (std::size_t near = first + step; near < first + step + group_size && near < input.count; ++near) {
+    if (near + step < input.count) {
+      __builtin_prefetch(input.corners + 4 * static_cast<std::size_t>(input.cells[near + step]));
     }
     const Index* ahead = input.corners + 4 * static_cast<std::size_t>(input.cells[near]);
     for (int k = 0; k < 4; ++k) {

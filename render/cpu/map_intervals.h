@@ -23,14 +23,19 @@ class MapIntervals {
   // The interval a scalar lies in; of two that meet there, the upper.
   std::uint16_t find(float scalar) const {
     const float place = std::clamp(scalar * map_grid_size, 0.0F, map_grid_size - 1.0F);
-    std::size_t n = grid_[static_cast<std::size_t>(place)];
+    return find(scalar, grid_[static_cast<std::size_t>(place)]);
+  }
+  // The same, from one of those below it or its own on.
+  std::uint16_t find(float scalar, std::uint16_t from) const {
+    std::size_t n = from;
     while (scalar >= intervals_[n + 1].begin) ++n;
     return static_cast<std::uint16_t>(n);
   }
   // Of those from `first` to `last` the least thin_length.
   float thin_length(std::uint16_t first, std::uint16_t last) const {
-    float least = intervals_[first].thin_length;
-    for (std::size_t n = first + std::size_t{1}; n <= last; ++n) least = std::min(least, intervals_[n].thin_length);
+    // Most cells touch one or two.
+    float least = std::min(intervals_[first].thin_length, intervals_[last].thin_length);
+    for (std::size_t n = first + std::size_t{1}; n < last; ++n) least = std::min(least, intervals_[n].thin_length);
     return least;
   }
   // Whether some intervals have no opacity throughout.
