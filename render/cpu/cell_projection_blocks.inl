@@ -83,15 +83,16 @@ class BlockTest {
         multiply_add(all_of(half_width_), magnitude(slope_a),
                      multiply_add(all_of(half_height_), magnitude(slope_b),
                                   (__builtin_shuffle(c, pairs.out) - __builtin_shuffle(c, pairs.in)) + rounding));
-    const BlockSet set = right - left < side && bottom - top < side ? sixteen(slope_a, slope_b, offset, left, top)
-                                                                    : all_blocks(slope_a, slope_b, offset);
+    const BlockSet set = right - left < side && bottom - top < side
+                             ? sixteen(slope_a, slope_b, offset, left, top)
+                             : more_blocks(slope_a, slope_b, offset, left, right, top, bottom);
     return set & candidates;
   }
 
  private:
   static constexpr int side = 4;
 
-  // Those of four columns and rows, and maybe others.
+  // Those of four columns and rows, and maybe others: in the columns left of `left`, or above `top`.
   BlockSet sixteen(const F4& slope_a, const F4& slope_b, const F4& offset, int left, int top) const {
     alignas(16) float a[4];
     alignas(16) float b[4];
@@ -107,10 +108,11 @@ class BlockTest {
     return ((met & 0x000FU) | (met & 0x00F0U) << 4 | (met & 0x0F00U) << 8 | (met & 0xF000U) << 12)
            << (blocks_per_side * top + left);
   }
-  __attribute__((noinline)) BlockSet all_blocks(const F4& slope_a, const F4& slope_b, const F4& offset) const {
+  __attribute__((noinline)) BlockSet more_blocks(F4 slope_a, F4 slope_b, F4 offset, int left, int right, int top,
+                                                 int bottom) const {
     BlockSet set = 0;
-    for (int top = 0; top < blocks_per_side; top += side) {
-      for (int left = 0; left < blocks_per_side; left += side) set |= sixteen(slope_a, slope_b, offset, left, top);
+    for (int row = top; row <= bottom; row += side) {
+      for (int column = left; column <= right; column += side) set |= sixteen(slope_a, slope_b, offset, column, row);
     }
     return set;
   }
