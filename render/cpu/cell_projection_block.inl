@@ -199,7 +199,12 @@ static __attribute__((noinline, flatten)) bool cross_cells(const View& view, con
   std::uint32_t count = 0;
   for (std::size_t n = 0; n < cell_count; ++n) {
     const std::uint32_t record = cells[n];
-    if (n + planes_ahead < cell_count) prefetch(planes[cells[n + planes_ahead]]);
+    if (n + planes_ahead < cell_count) {
+      prefetch(planes[cells[n + planes_ahead]]);
+      // A second part where there is one, and else what is there already.
+      const std::uint32_t near = cells[n + planes_ahead / 2];
+      __builtin_prefetch(planes[near].refined ? static_cast<const void*>(refinements + near) : planes + near);
+    }
     const CellPlanes& p = planes[record];
     Lanes u_in;
     Lanes u_out;
