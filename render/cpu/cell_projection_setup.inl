@@ -233,7 +233,7 @@ static inline void load_group(const SetupInput& input, std::size_t first, CellGr
 }
 #endif
 
-// Corners, then what they name, are asked for some cells ahead.
+// Corners, then what they name, are asked for some cells ahead. (Always inlined: see prefetch().)
 static inline __attribute__((always_inline)) void prefetch_groups(const SetupInput& input, std::size_t first) {
   constexpr std::size_t step = 16;
   for (std::size_t near = first + step; near < first + step + group_size && near < input.count; ++near) {
