@@ -1,0 +1,68 @@
+// Mode volume as a finished picture in somebody else's framebuffer: what render() gives, on the card.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/camera.h"
+#include "core/parameters.h"
+#include "core/progress.h"
+#include "render/gl/objects.h"
+#include "render/gl/volume.h"
+#include "render/scene.h"
+
+namespace atomesh::gl {
+
+// How much of a picture is drawn.
+struct PictureDetail {
+  // One ray for so many × so many pixels, 1, 2, 4 or 8; those between are interpolated. Above 1 nothing is
+  // supersampled.
+  int stride = 1;
+  bool operator==(const PictureDetail&) const = default;
+};
+
+// Throws UnavailableError where the context that is current was lost: the card was reset. Only contexts that were made
+// to notify of it tell.
+void require_living_context();
+
+// Of one context, which is current whenever anything of it is called, the destructor included. OpenGL's state is left
+// as it was found.
+class VolumePicture {
+ public:
+  // Larger pictures are drawn in parts of at most so many rays along a side (and at most Volume::largest_side()).
+  // Throws UnavailableError unless the driver is sufficient and takes the shaders.
+  explicit VolumePicture(int part_side = 4096);
+
+  // What is drawn from now on: a scene of mode volume without solids (UsageError for another).
+  void set_scene(std::shared_ptr<const Scene> scene);
+  const std::shared_ptr<const Scene>& scene() const { return scene_; }
+
+  // Into the framebuffer that is bound, camera.width × camera.height pixels from its corner, background included:
+  // colours premultiplied by their coverage, n × n rays a pixel (Parameters::supersampling) averaged. Waits for OpenGL
+  // to finish. Throws as Volume::draw() does, and UnavailableError for a lost context; what is then in the framebuffer
+  // is of no use, nor is this object.
+  void draw(const Camera& camera, const Parameters& parameters, const PictureDetail& detail = {},
+            Progress& progress = no_progress());
+
+  // Milliseconds of the last draw().
+  struct Times {
+    double cells = 0.0;   // projecting, sorting and sending them; 0 where the view was the one before
+    double pixels = 0.0;  // OpenGL's
+  };
+  const Times& last() const { return last_; }
+
+ private:
+  // Lays the volume's texture over the background: `n` × `n` of its pixels for each of the target's, or one for
+  // `stride` × `stride`.
+  void lay_over_background(const Camera& camera, const PixelWindow& pixels, const Vec4f& background, int n, int stride,
+                           GLuint target) const;
+
+  Volume volume_;
+  Program finish_;
+  VertexArray vertex_array_;
+  int part_side_;
+  std::shared_ptr<const Scene> scene_;
+  Times last_;
+};
+
+}  // namespace atomesh::gl
