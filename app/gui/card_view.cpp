@@ -5,11 +5,19 @@
 #include <QOpenGLFunctions>
 #include <QPainter>
 #include <chrono>
+#include <exception>
+#include <new>
 
-#include "core/error.h"
 #include "core/stopwatch.h"
 
 namespace atomesh::gui {
+
+namespace {
+
+// Who drags at most rests for so long, ms, in between.
+constexpr int at_rest = 150;
+
+}  // namespace
 
 const GpuInfo& gpu_of_this_machine() {
   static const GpuInfo info = [] {
@@ -29,6 +37,12 @@ CardView::CardView(QWidget* parent) : QOpenGLWidget(parent) {
   setObjectName("card_view");
   setAttribute(Qt::WA_TransparentForMouseEvents);
   setFocusPolicy(Qt::NoFocus);
+  rest_.setSingleShot(true);
+  rest_.setInterval(at_rest);
+  connect(&rest_, &QTimer::timeout, this, [this] {
+    detail_ = {};
+    update();
+  });
 }
 
 CardView::~CardView() {
@@ -44,14 +58,30 @@ void CardView::release() {
   disconnect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &CardView::release);
   makeCurrent();
   gpu_.release();
+  volume_.reset();
   doneCurrent();
 }
 
 void CardView::set(const std::shared_ptr<const WorkerPicture>& scene, const Parameters& parameters,
                    const Camera& camera, const QImage& overlay) {
+  const bool volume = scene && scene->scene->mode == Mode::volume;
   if (scene != scene_) {
+    gpu_.set_scene(scene && !volume ? scene->scene : nullptr);
     scene_ = scene;
-    gpu_.set_scene(scene ? scene->scene : nullptr);
+    moving_.forget();
+    rest_.stop();
+    detail_ = {};
+  } else if (volume && parameters != parameters_) {
+    if (parameters.supersampling != parameters_.supersampling || camera.width != camera_.width ||
+        camera.height != camera_.height) {
+      moving_.forget();
+    }
+    detail_ = moving_.next();
+    if (detail_ == gl::PictureDetail()) {
+      rest_.stop();
+    } else {
+      rest_.start();
+    }
   }
   parameters_ = parameters;
   camera_ = camera;
@@ -59,22 +89,55 @@ void CardView::set(const std::shared_ptr<const WorkerPicture>& scene, const Para
   update();
 }
 
+void CardView::paintEvent(QPaintEvent* event) {
+  if (context() != nullptr && !context()->isValid()) {
+    fail(tr("OpenGL: the context is lost, the graphics card was reset"));
+    return;
+  }
+  QOpenGLWidget::paintEvent(event);
+}
+
+void CardView::draw_volume() {
+  gpu_.drop_scene();
+  if (!volume_) volume_ = std::make_unique<gl::VolumePicture>();
+  volume_->set_scene(scene_->scene);
+  volume_->draw(camera_, parameters_, detail_);
+  if (detail_ == gl::PictureDetail()) moving_.drew_whole(volume_->last(), parameters_.supersampling);
+}
+
+void CardView::fail(const QString& message) {
+  if (failed_) return;
+  failed_ = true;
+  volume_.reset();
+  emit failed(message);
+}
+
 void CardView::paintGL() {
-  if (!scene_) return;
+  if (!scene_ || failed_) return;
   const auto start = std::chrono::steady_clock::now();
   try {
-    gpu_.draw(camera_, parameters_);
-    context()->functions()->glFinish();
-  } catch (const Error& error) {
-    emit failed(QString::fromUtf8(error.what()));
+    if (scene_->scene->mode == Mode::volume) {
+      draw_volume();
+    } else {
+      volume_.reset();
+      gpu_.draw(camera_, parameters_);
+      context()->functions()->glFinish();
+      gl::require_living_context();
+    }
+  } catch (const std::bad_alloc&) {
+    fail(tr("there is not enough memory"));
+    return;
+  } catch (const std::exception& error) {
+    fail(QString::fromUtf8(error.what()));
     return;
   }
   const double ms = ms_since(start);
+  const bool whole = detail_ == gl::PictureDetail();
   if (!overlay_.isNull()) {
     QPainter painter(this);
     painter.drawImage(rect(), overlay_);
   }
-  emit painted(ms);
+  emit painted(ms, whole);
 }
 
 }  // namespace atomesh::gui

@@ -1,11 +1,13 @@
-// The graphics card's view: a GpuScene in a widget, and what lies over it.
+// The graphics card's view: a scene in a widget, and what lies over it.
 #pragma once
 
 #include <QImage>
 #include <QOpenGLWidget>
+#include <QTimer>
 #include <memory>
 
 #include "app/gui/gpu_scene.h"
+#include "app/gui/moving_detail.h"
 #include "app/gui/render_worker.h"
 
 namespace atomesh::gui {
@@ -13,7 +15,8 @@ namespace atomesh::gui {
 // What OpenGL there is, asked once: a context without a window is made for it. `version` is empty where there is none.
 const GpuInfo& gpu_of_this_machine();
 
-// Leaves the mouse to the widget under it.
+// Draws modes surface, atoms (GpuScene) and volume (gl::VolumePicture). A volume that takes long is drawn with less
+// detail while the view or the colours change, and whole when they rest. Leaves the mouse to the widget under it.
 class CardView : public QOpenGLWidget {
   Q_OBJECT
 
@@ -27,21 +30,30 @@ class CardView : public QOpenGLWidget {
   const QImage& overlay() const { return overlay_; }
 
  signals:
-  void painted(double ms);  // until the card was done
+  void painted(double ms, bool whole);  // until the card was done; whether nothing is left out
+  // Nothing more comes of it: it is to be deleted.
   void failed(const QString& message);
 
  protected:
   void initializeGL() override;
   void paintGL() override;
+  void paintEvent(QPaintEvent* event) override;
 
  private:
   void release();
+  void draw_volume();
+  void fail(const QString& message);
 
   GpuScene gpu_;
+  std::unique_ptr<gl::VolumePicture> volume_;
   std::shared_ptr<const WorkerPicture> scene_;
   Parameters parameters_;
   Camera camera_;
   QImage overlay_;
+  MovingDetail moving_;
+  gl::PictureDetail detail_;  // of the next picture
+  QTimer rest_{this};         // runs while what is shown is not the whole
+  bool failed_ = false;
 };
 
 }  // namespace atomesh::gui

@@ -9,15 +9,15 @@ namespace atomesh::gui {
 
 namespace {
 
-// "4.5 (Core Profile) Mesa …" → at least 3.2; "OpenGL ES 3.2 …" is another OpenGL.
-bool at_least_3_2(std::string_view version) {
+// "4.5 (Core Profile) Mesa …" is at least 3.2; "OpenGL ES 3.2 …" is another OpenGL.
+bool at_least(int wanted_major, int wanted_minor, std::string_view version) {
   int major = 0;
   int minor = 0;
   const char* end = version.data() + version.size();
   const auto [point, bad] = std::from_chars(version.data(), end, major);
   if (bad != std::errc() || point == end || *point != '.') return false;
   if (std::from_chars(point + 1, end, minor).ec != std::errc()) return false;
-  return major > 3 || (major == 3 && minor >= 2);
+  return major > wanted_major || (major == wanted_major && minor >= wanted_minor);
 }
 
 bool draws_in_software(std::string_view renderer) {
@@ -48,7 +48,8 @@ GpuInfo gpu_info(const std::function<void*(const char*)>& proc) {
   GpuInfo info;
   info.renderer = text(gl_renderer);
   info.version = text(gl_version);
-  info.sufficient = at_least_3_2(info.version);
+  info.sufficient = at_least(3, 2, info.version);
+  info.volumes = at_least(4, 3, info.version);
   info.software = draws_in_software(info.renderer);
   return info;
 }

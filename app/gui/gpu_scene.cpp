@@ -105,6 +105,13 @@ class GpuScene::Pipeline {
     stale_ = true;
   }
 
+  void drop_scene() {
+    if (!scene_ && !drawing_) return;
+    scene_ = nullptr;
+    stale_ = true;
+    if (window_) take_scene();
+  }
+
   void draw(const Camera& camera, const Parameters& parameters) {
     check_picture(camera, parameters);
     if (!window_) open_window();
@@ -231,6 +238,10 @@ void GpuScene::set_scene(std::shared_ptr<const Scene> scene) {
 
 void GpuScene::draw(const Camera& camera, const Parameters& parameters) {
   pipeline_->draw(camera, parameters);
+}
+
+void GpuScene::drop_scene() {
+  pipeline_->drop_scene();
 }
 
 void GpuScene::release() {

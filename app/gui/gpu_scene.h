@@ -40,6 +40,8 @@ class GpuScene {
   // rays a pixel (Parameters::supersampling) as many are drawn as the card's textures hold. Throws UnavailableError
   // where this OpenGL will not do, and nothing is drawn.
   void draw(const Camera& camera, const Parameters& parameters);
+  // set_scene(nullptr), and what lies on the card for the scene goes at once.
+  void drop_scene();
   // Before the context goes: gives back what lies on the card. The scene stays; the next draw(), also in another
   // context, uploads it again.
   void release();
@@ -53,6 +55,7 @@ struct GpuInfo {
   std::string renderer;     // GL_RENDERER
   std::string version;      // GL_VERSION
   bool sufficient = false;  // OpenGL 3.2 or later, not OpenGL ES
+  bool volumes = false;     // OpenGL 4.3 or later, for gl::VolumePicture
   bool software = false;    // llvmpipe, softpipe, swrast, SwiftShader, …
 };
 // Of the current context; `proc` gives a function's address by name (QOpenGLContext::getProcAddress).

@@ -23,7 +23,7 @@ Viewport::Viewport(Workspace& workspace, QWidget* parent) : QWidget(parent), wor
   connect(&workspace_, &Workspace::shown_changed, this, &Viewport::order);
   connect(&workspace_, &Workspace::document_changed, this, &Viewport::forget_pictures);
   connect(&workspace_, &Workspace::view_options_changed, this, [this] {
-    card_failed_ = false;
+    card_failed_ = {};
     refresh_overlay();
     order();
   });
@@ -61,18 +61,37 @@ void Viewport::forget_pictures() {
   update();
 }
 
-bool Viewport::drawn_by_gpu() const {
+std::optional<QString> Viewport::why_not_by_gpu() const {
   const Mode mode = workspace_.shown().mode;
-  if (card_failed_ || (mode != Mode::surface && mode != Mode::atoms)) return false;
-  switch (workspace_.view_options().drawing) {
-    case ViewOptions::Drawing::cpu:
-      return false;
-    case ViewOptions::Drawing::gpu:
-      return gpu_of_this_machine().sufficient;
-    case ViewOptions::Drawing::automatic:
-      break;
+  if (mode != Mode::surface && mode != Mode::atoms && mode != Mode::volume) return tr("it draws no such mode");
+  const ViewOptions::Drawing drawing = workspace_.view_options().drawing;
+  if (drawing == ViewOptions::Drawing::cpu) return tr("the display options say so");
+  if (card_failed_[static_cast<std::size_t>(mode)]) return tr("the graphics card could not");
+  const GpuInfo& gpu = gpu_of_this_machine();
+  if (!(mode == Mode::volume ? gpu.volumes : gpu.sufficient)) {
+    return tr("there is no OpenGL %1 here, only \"%2\" %3")
+        .arg(mode == Mode::volume ? "4.3" : "3.2", QString::fromStdString(gpu.renderer),
+             QString::fromStdString(gpu.version));
   }
-  return gpu_of_this_machine().sufficient && !gpu_of_this_machine().software;
+  if (drawing == ViewOptions::Drawing::automatic && gpu.software) {
+    return tr("OpenGL runs in software, which takes longer: %1").arg(QString::fromStdString(gpu.renderer));
+  }
+  if (mode == Mode::volume && workspace_.shown().volume.solid != VolumeSolid::none) {
+    return tr("there is something in the volume");
+  }
+  return std::nullopt;
+}
+
+void Viewport::say_who_draws() {
+  if (workspace_.shown().mode != Mode::volume) return;
+  const std::optional<QString> why_not = why_not_by_gpu();
+  const QString line =
+      why_not
+          ? tr("The processor draws the volume: %1").arg(*why_not)
+          : tr("The graphics card draws the volume: %1").arg(QString::fromStdString(gpu_of_this_machine().renderer));
+  if (line == said_of_volumes_) return;
+  said_of_volumes_ = line;
+  workspace_.say(line);
 }
 
 bool Viewport::scene_is_shown() const {
@@ -90,6 +109,7 @@ void Viewport::order() {
   was_settled_ = false;
   card_painted_ = false;
   const bool on_card = drawn_by_gpu();
+  say_who_draws();
   if (on_card && scene_is_shown()) {
     worker_.stop();
     show_on_card();
@@ -145,31 +165,35 @@ void Viewport::refresh_overlay() {
 void Viewport::show_on_card() {
   if (card_ == nullptr) {
     card_ = new CardView(this);
-    connect(card_, &CardView::painted, this, [this](double ms) {
+    connect(card_, &CardView::painted, this, [this](double ms, bool whole) {
       if (!drawn_by_gpu()) return;
-      card_painted_ = true;
+      card_painted_ = whole;
       emit frame_shown(nullptr, ms);
-      if (!was_settled_) {
+      if (whole && !was_settled_) {
         was_settled_ = true;
         emit became_settled();
       }
     });
-    // It cannot draw; the processor can.
-    connect(
-        card_, &CardView::failed, this,
-        [this](const QString& message) {
-          card_failed_ = true;
-          card_->hide();
-          workspace_.say(tr("The graphics card cannot draw this, so the processor does: %1").arg(message));
-          order();
-        },
-        Qt::QueuedConnection);
+    connect(card_, &CardView::failed, this,
+            [this] { card_failed_[static_cast<std::size_t>(scene_->scene->mode)] = true; });
+    connect(card_, &CardView::failed, this, &Viewport::give_up_card, Qt::QueuedConnection);
     card_->setGeometry(rect());
   }
   const Camera camera = workspace_.camera();
   card_->set(scene_, workspace_.shown(), camera, overlay(*scene_, workspace_.shown(), camera));
   card_->show();
   picture_.reset();
+}
+
+// It cannot draw; the processor can.
+void Viewport::give_up_card(const QString& message) {
+  if (card_ == nullptr) return;
+  // With its context: that may be what failed.
+  card_->hide();
+  card_->deleteLater();
+  card_ = nullptr;
+  workspace_.say(tr("The graphics card cannot draw this, so the processor does: %1").arg(message));
+  order();
 }
 
 bool Viewport::settled() const {

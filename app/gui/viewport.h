@@ -3,7 +3,9 @@
 
 #include <QImage>
 #include <QWidget>
+#include <array>
 #include <memory>
+#include <optional>
 
 #include "app/gui/render_worker.h"
 #include "app/gui/workspace.h"
@@ -27,7 +29,7 @@ class Viewport : public QWidget {
   // Whether what is shown is complete and of the parameters as they are.
   bool settled() const;
   // Whether the graphics card draws the shown mode.
-  bool drawn_by_gpu() const;
+  bool drawn_by_gpu() const { return !why_not_by_gpu(); }
   // What is on the screen, in device pixels: the picture with what lies over it. Null before the first.
   QImage screenshot();
   ViewInput& input() { return *input_; }
@@ -49,6 +51,10 @@ class Viewport : public QWidget {
   void forget_pictures();
   void follow_size();
   void show_on_card();
+  // Nothing where the card draws the shown mode.
+  std::optional<QString> why_not_by_gpu() const;
+  void say_who_draws();
+  void give_up_card(const QString& message);
   bool scene_is_shown() const;
   void refresh_overlay();
   QImage overlay(const WorkerPicture& of, const Parameters& parameters, const Camera& camera) const;
@@ -59,10 +65,11 @@ class Viewport : public QWidget {
   std::shared_ptr<const WorkerPicture> picture_;  // the last of the CPU renderers
   std::shared_ptr<const WorkerPicture> scene_;    // the last scene for the card
   std::unique_ptr<ViewInput> input_;
-  CardView* card_ = nullptr;   // once it was needed
-  bool card_painted_ = false;  // with everything as it is now
-  bool card_failed_ = false;
-  QImage overlay_;  // of `picture_`
+  CardView* card_ = nullptr;           // once it was needed
+  bool card_painted_ = false;          // with everything as it is now
+  std::array<bool, 5> card_failed_{};  // by mode
+  QString said_of_volumes_;            // who draws them
+  QImage overlay_;                     // of `picture_`
   bool was_settled_ = false;
 };
 

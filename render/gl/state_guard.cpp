@@ -52,12 +52,18 @@ StateGuard::StateGuard() {
 
 StateGuard::~StateGuard() {
   const auto name = [](GLint value) { return static_cast<GLuint>(value); };
+  // What was bound may be gone: deleted by a context that shares its objects, or only kept by being bound.
+  const auto living = [&](GLint value, auto&& is) {
+    return value != 0 && is(name(value)) == GL_TRUE ? name(value) : GLuint{0};
+  };
+  const auto texture = [&](GLint value) { return living(value, [](GLuint n) { return glIsTexture(n); }); };
+  const auto buffer = [&](GLint value) { return living(value, [](GLuint n) { return glIsBuffer(n); }); };
   for (std::size_t i = 0; i < switches_.size(); ++i) (enabled_[i] ? glEnable : glDisable)(switches_[i]);
   for (std::size_t i = 0; i < units_.size(); ++i) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-    glBindTexture(GL_TEXTURE_2D, name(units_[i].texture_2d));
-    glBindTexture(GL_TEXTURE_3D, name(units_[i].texture_3d));
-    glBindTexture(GL_TEXTURE_BUFFER, name(units_[i].texture_buffer));
+    glBindTexture(GL_TEXTURE_2D, texture(units_[i].texture_2d));
+    glBindTexture(GL_TEXTURE_3D, texture(units_[i].texture_3d));
+    glBindTexture(GL_TEXTURE_BUFFER, texture(units_[i].texture_buffer));
   }
   glActiveTexture(name(active_texture_));
   for (std::size_t i = 0; i < stencil_.size(); ++i) {
@@ -81,10 +87,10 @@ StateGuard::~StateGuard() {
   glDepthMask(depth_mask_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(draw_framebuffer_));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, name(read_framebuffer_));
-  glUseProgram(name(program_));
+  glUseProgram(living(program_, [](GLuint n) { return glIsProgram(n); }));
   glBindVertexArray(name(vertex_array_));
-  glBindBuffer(GL_ARRAY_BUFFER, name(array_buffer_));
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, name(pack_buffer_));
+  glBindBuffer(GL_ARRAY_BUFFER, buffer(array_buffer_));
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer(pack_buffer_));
   glPixelStorei(GL_PACK_ALIGNMENT, pack_alignment_);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, name(unpack_buffer_));
   glPixelStorei(GL_UNPACK_ALIGNMENT, unpack_alignment_);

@@ -7,7 +7,9 @@
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "render/finish.h"
+#include "render/gl/objects.h"
 #include "render/gl/state_guard.h"
+#include "render/gl/volume.h"
 
 namespace atomesh::gl {
 
@@ -32,11 +34,49 @@ void require_living_context() {
   if (status != GL_NO_ERROR) throw UnavailableError("OpenGL: the context is lost, the graphics card was reset");
 }
 
-VolumePicture::VolumePicture(int part_side) {
-  finish_ = Program::draw("whole_window.vert", "finish.frag");
-  vertex_array_ = make_vertex_array();
-  part_side_ = std::min(part_side, volume_.largest_side());
-}
+class VolumePicture::Pipeline {
+ public:
+  explicit Pipeline(int part_side)
+      : finish_(Program::draw("whole_window.vert", "finish.frag")),
+        vertex_array_(make_vertex_array()),
+        part_side_(std::min(part_side, volume_.largest_side())) {}
+
+  Volume& volume() { return volume_; }
+  int part_side() const { return part_side_; }
+
+  // Lays the volume's texture over the background: `n` × `n` of its pixels for each of the target's, or one for
+  // `stride` × `stride`.
+  void lay_over_background(const Camera& camera, const PixelWindow& pixels, const Vec4f& background, int n, int stride,
+                           GLuint target) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    // OpenGL counts rows from below.
+    const int bottom = camera.height - pixels.top - pixels.height;
+    glViewport(pixels.left, bottom, pixels.width, pixels.height);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    for (const GLenum off : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE}) glDisable(off);
+    finish_.use();
+    volume_.texture().bind(0);
+    glUniform1i(finish_.uniform("rays"), 0);
+    glUniform2i(finish_.uniform("size"), volume_.columns(), volume_.rows());
+    glUniform2i(finish_.uniform("corner"), pixels.left, bottom);
+    glUniform1i(finish_.uniform("rows"), pixels.height);
+    glUniform1i(finish_.uniform("n"), n);
+    glUniform1i(finish_.uniform("stride"), stride);
+    const float a = background.a;
+    glUniform4f(finish_.uniform("background"), background.r * a, background.g * a, background.b * a, a);
+    glBindVertexArray(vertex_array_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+ private:
+  Volume volume_;
+  Program finish_;
+  VertexArray vertex_array_;
+  int part_side_;
+};
+
+VolumePicture::VolumePicture(int part_side) : pipeline_(std::make_unique<Pipeline>(part_side)) {}
+VolumePicture::~VolumePicture() = default;
 
 void VolumePicture::set_scene(std::shared_ptr<const Scene> scene) {
   if (scene->mode != Mode::volume || scene->solids != nullptr) {
@@ -44,7 +84,7 @@ void VolumePicture::set_scene(std::shared_ptr<const Scene> scene) {
                      (scene->solids != nullptr ? " with something in it" : "") + " is not drawn here");
   }
   if (scene == scene_) return;
-  volume_.set_scene(*scene);
+  pipeline_->volume().set_scene(*scene);
   scene_ = std::move(scene);
 }
 
@@ -59,46 +99,26 @@ void VolumePicture::draw(const Camera& camera, const Parameters& parameters, con
   const Camera rays = ray_camera(camera, n);
   const PixelLattice lattice{detail.stride, detail.stride};
   // Of whole pixels, and such that a part's rays begin with a pixel that the lattice has.
-  const int side = std::max(1, part_side_ / n) * detail.stride;
+  const int side = std::max(1, pipeline_->part_side() / n) * detail.stride;
+  Volume& volume = pipeline_->volume();
   last_ = {};
   RenderStats stats;
   for (int top = 0; top < camera.height; top += side) {
     for (int left = 0; left < camera.width; left += side) {
       const PixelWindow part{left, top, std::min(side, camera.width - left), std::min(side, camera.height - top)};
-      volume_.draw(rays, parameters, ray_window(part, n), lattice, stats, progress);
-      const VolumeStats& times = volume_.last();
+      volume.draw(rays, parameters, ray_window(part, n), lattice, stats, progress);
+      const VolumeStats& times = volume.last();
       last_.cells += times.project_ms + times.order_ms + times.faces_ms;
       last_.pixels += times.draw_ms;
       const auto start = std::chrono::steady_clock::now();
-      lay_over_background(camera, part, parameters.background, n, detail.stride, static_cast<GLuint>(target));
+      pipeline_->lay_over_background(camera, part, parameters.background, n, detail.stride,
+                                     static_cast<GLuint>(target));
       glFinish();
       last_.pixels += ms_since(start);
     }
   }
   require_living_context();
   check_errors("finishing the picture");
-}
-
-void VolumePicture::lay_over_background(const Camera& camera, const PixelWindow& pixels, const Vec4f& background, int n,
-                                        int stride, GLuint target) const {
-  glBindFramebuffer(GL_FRAMEBUFFER, target);
-  // OpenGL counts rows from below.
-  const int bottom = camera.height - pixels.top - pixels.height;
-  glViewport(pixels.left, bottom, pixels.width, pixels.height);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  for (const GLenum off : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE}) glDisable(off);
-  finish_.use();
-  volume_.texture().bind(0);
-  glUniform1i(finish_.uniform("rays"), 0);
-  glUniform2i(finish_.uniform("size"), volume_.columns(), volume_.rows());
-  glUniform2i(finish_.uniform("corner"), pixels.left, bottom);
-  glUniform1i(finish_.uniform("rows"), pixels.height);
-  glUniform1i(finish_.uniform("n"), n);
-  glUniform1i(finish_.uniform("stride"), stride);
-  const float a = background.a;
-  glUniform4f(finish_.uniform("background"), background.r * a, background.g * a, background.b * a, a);
-  glBindVertexArray(vertex_array_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 }  // namespace atomesh::gl

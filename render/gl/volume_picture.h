@@ -2,13 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "core/camera.h"
 #include "core/parameters.h"
 #include "core/progress.h"
-#include "render/gl/objects.h"
-#include "render/gl/volume.h"
 #include "render/scene.h"
 
 namespace atomesh::gl {
@@ -32,6 +29,9 @@ class VolumePicture {
   // Larger pictures are drawn in parts of at most so many rays along a side (and at most Volume::largest_side()).
   // Throws UnavailableError unless the driver is sufficient and takes the shaders.
   explicit VolumePicture(int part_side = 4096);
+  ~VolumePicture();
+  VolumePicture(const VolumePicture&) = delete;
+  VolumePicture& operator=(const VolumePicture&) = delete;
 
   // What is drawn from now on: a scene of mode volume without solids (UsageError for another).
   void set_scene(std::shared_ptr<const Scene> scene);
@@ -52,15 +52,8 @@ class VolumePicture {
   const Times& last() const { return last_; }
 
  private:
-  // Lays the volume's texture over the background: `n` × `n` of its pixels for each of the target's, or one for
-  // `stride` × `stride`.
-  void lay_over_background(const Camera& camera, const PixelWindow& pixels, const Vec4f& background, int n, int stride,
-                           GLuint target) const;
-
-  Volume volume_;
-  Program finish_;
-  VertexArray vertex_array_;
-  int part_side_;
+  class Pipeline;  // OpenGL's own, whose header does not go with that of windows
+  std::unique_ptr<Pipeline> pipeline_;
   std::shared_ptr<const Scene> scene_;
   Times last_;
 };

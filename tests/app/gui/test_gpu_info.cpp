@@ -26,6 +26,11 @@ TEST(GpuInfo, KnowsVersionsAndRenderers) {
   EXPECT_FALSE(info("Mesa DRI Intel(R)", "3.1 Mesa 20.1").sufficient);
   EXPECT_FALSE(info("GeForce", "2.1 NVIDIA").sufficient);
   EXPECT_TRUE(info("x", "10.0").sufficient);
+  EXPECT_FALSE(info("V3D", "4.2 Mesa").volumes);
+  EXPECT_TRUE(info("V3D", "4.2 Mesa").sufficient);
+  EXPECT_TRUE(info("x", "4.3").volumes);
+  EXPECT_TRUE(info("x", "5.0").volumes);
+  EXPECT_FALSE(info("V3D", "OpenGL ES 4.3 Mesa").volumes);
   EXPECT_FALSE(info("V3D", "OpenGL ES 3.2 Mesa").sufficient);
   EXPECT_FALSE(info(nullptr, nullptr).sufficient);
   EXPECT_FALSE(info("x", "").sufficient);

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "render/gl/context.h"
+#include "render/gl/objects.h"
 #include "render/gl/volume_picture.h"
 #include "tests/render/fixtures.h"
 

@@ -1,0 +1,275 @@
+// Volumes in the window by the graphics card (here mostly: by OpenGL in software): the pictures of the renderers,
+// beside surface and balls in the same context, and what happens when OpenGL fails.
+#include <epoxy/gl.h>  // before Qt's
+#include <gtest/gtest.h>
+
+#include <QOpenGLWidget>
+#include <QSignalSpy>
+#include <QTest>
+#include <algorithm>
+#include <map>
+#include <thread>
+#include <utility>
+
+#include "app/gui/card_view.h"
+#include "app/gui/view_input.h"
+#include "render/gl/context.h"
+#include "tests/app/gui/window_fixture.h"
+
+namespace {
+
+using namespace atomesh;
+using namespace atomesh::gui;
+using test::child;
+using test::wait_for;
+
+class WindowVolume : public test::WindowFixture {
+ protected:
+  void SetUp() override {
+    // The driver checks every call.
+    QSurfaceFormat format = QSurfaceFormat::defaultFormat();
+    format.setOption(QSurfaceFormat::DebugContext);
+    QSurfaceFormat::setDefaultFormat(format);
+    test::WindowFixture::SetUp();
+    if (IsSkipped()) return;
+    if (!gpu_of_this_machine().volumes) GTEST_SKIP() << "no OpenGL 4.3";
+    open_salt();
+    workspace().set("volume.alpha_length", "4");
+    connect_log();
+  }
+  void TearDown() override {
+    window.reset();
+    EXPECT_EQ(gl::take_messages(), std::vector<std::string>());
+  }
+
+  Workspace& workspace() { return window->workspace(); }
+  QOpenGLWidget& card() { return child<QOpenGLWidget>(*window, "card_view"); }
+  void connect_log() {
+    QObject::connect(&workspace(), &Workspace::said, window.get(), [this](const QString& line) { log += line + '\n'; });
+  }
+  void draw_with(ViewOptions::Drawing who) {
+    ViewOptions options = workspace().view_options();
+    options.legend = options.tripod = options.scale_bar = false;
+    options.drawing = who;
+    workspace().set_view_options(options);
+  }
+  void choose(Mode mode) { workspace().set("mode", std::string(mode_name(mode))); }
+  bool settled() {
+    return wait_for([&] { return window->viewport().settled(); });
+  }
+  // Its errors are collected from then on; a frame with some throws what they are.
+  void watch_card() {
+    card().makeCurrent();
+    gl::collect_messages();
+    card().doneCurrent();
+  }
+  Image screen() { return test::to_image(window->viewport().screenshot()); }
+  Image rendered(const char* name) {
+    const Workspace& w = workspace();
+    const Scene scene = make_scene(*w.document()->material, w.shown());
+    Image image;
+    // The window's context may be current in this thread.
+    std::thread([&] {
+      RenderStats stats;
+      image = render(find_renderer(name), scene, w.camera(), w.shown(), stats);
+    }).join();
+    return image;
+  }
+
+  QString log;
+};
+
+TEST_F(WindowVolume, IsTheRenderersPicture) {
+  draw_with(ViewOptions::Drawing::gpu);
+  choose(Mode::volume);
+  ASSERT_TRUE(settled());
+  ASSERT_TRUE(window->viewport().drawn_by_gpu());
+  EXPECT_TRUE(log.contains("The graphics card draws the volume")) << log.toStdString();
+  watch_card();
+  for (const char* projection : {"parallel", "perspective"}) {
+    for (const char* rays : {"1", "2"}) {
+      workspace().set("view.projection", projection);
+      workspace().set("quality.supersampling", rays);
+      ASSERT_TRUE(settled());
+      ASSERT_TRUE(window->viewport().drawn_by_gpu()) << log.toStdString();
+      const Image image = screen();
+      test::keep_screenshot(window->viewport().screenshot(), std::string("volume-") + projection + rays);
+      const Image havs = rendered("havs");
+      // To the rounding of a byte.
+      EXPECT_LE(compare_images(image, havs).max, 0.51 / 255.0) << projection << rays;
+      EXPECT_GE(compare_images(image, rendered("cpu")).psnr, 45.0) << projection << rays;
+      Image nothing(image.width, image.height);
+      std::fill(nothing.pixels.begin(), nothing.pixels.end(), workspace().shown().background);
+      EXPECT_GT(compare_images(image, nothing).rmse, 0.01);
+    }
+  }
+}
+
+TEST_F(WindowVolume, TakesTurnsWithSurfaceAndBalls) {
+  draw_with(ViewOptions::Drawing::gpu);
+  std::map<Mode, Image> first;
+  for (int round = 0; round < 3; ++round) {
+    for (const Mode mode : {Mode::surface, Mode::volume, Mode::atoms, Mode::volume}) {
+      choose(mode);
+      ASSERT_TRUE(settled()) << mode_name(mode);
+      ASSERT_TRUE(window->viewport().drawn_by_gpu()) << mode_name(mode) << log.toStdString();
+      watch_card();
+      const Image image = screen();
+      const auto [known, is_new] = first.try_emplace(mode, image);
+      if (!is_new) {
+        EXPECT_EQ(compare_images(image, known->second).max, 0.0) << mode_name(mode) << " in round " << round;
+      }
+    }
+  }
+}
+
+TEST_F(WindowVolume, IsWholeAgainAtRest) {
+  draw_with(ViewOptions::Drawing::gpu);
+  choose(Mode::volume);
+  workspace().set("quality.supersampling", "4");  // takes long
+  ASSERT_TRUE(settled());
+  QSignalSpy painted(&card(), SIGNAL(painted(double, bool)));
+  QSignalSpy rests(&window->viewport(), &Viewport::became_settled);
+  workspace().set("view.azimuth", "31");
+  EXPECT_FALSE(window->viewport().settled());
+  ASSERT_TRUE(wait_for([&] { return !painted.isEmpty(); }));
+  EXPECT_FALSE(painted[0][1].toBool()) << "was quick: " << painted[0][0].toDouble() << " ms";
+  EXPECT_FALSE(window->viewport().settled());
+  ASSERT_TRUE(settled());
+  EXPECT_EQ(rests.size(), 1);
+  EXPECT_TRUE(painted.last()[1].toBool());
+  EXPECT_LT(painted[0][0].toDouble(), painted.last()[0].toDouble());
+  EXPECT_LE(compare_images(screen(), rendered("havs")).max, 0.51 / 255.0);
+}
+
+TEST_F(WindowVolume, IsPickedAsThatOfTheProcessor) {
+  std::vector<Pick> picks;
+  for (const auto who : {ViewOptions::Drawing::gpu, ViewOptions::Drawing::cpu}) {
+    draw_with(who);
+    choose(Mode::volume);
+    ASSERT_TRUE(settled());
+    workspace().clear_picks();
+    QSignalSpy looked_up(&window->viewport().input(), &ViewInput::looked_up);
+    QTest::mouseClick(&window->viewport(), Qt::LeftButton, Qt::NoModifier, window->viewport().rect().center());
+    ASSERT_TRUE(wait_for([&] { return !looked_up.isEmpty(); }));
+    ASSERT_EQ(workspace().picks().size(), 1U);
+    picks.push_back(workspace().picks().front());
+  }
+  EXPECT_EQ(picks[0].position, picks[1].position);
+}
+
+TEST_F(WindowVolume, WithSomethingInItIsTheProcessors) {
+  draw_with(ViewOptions::Drawing::gpu);
+  choose(Mode::volume);
+  workspace().set("volume.solid", "walls");
+  ASSERT_TRUE(settled());
+  EXPECT_FALSE(window->viewport().drawn_by_gpu());
+  EXPECT_TRUE(log.contains("The processor draws the volume")) << log.toStdString();
+  workspace().set("volume.solid", "none");
+  ASSERT_TRUE(settled());
+  EXPECT_TRUE(window->viewport().drawn_by_gpu());
+}
+
+TEST_F(WindowVolume, IsTheProcessorsWhereOpenGlIsSoftwareAndNobodySaysOtherwise) {
+  draw_with(ViewOptions::Drawing::automatic);
+  choose(Mode::volume);
+  ASSERT_TRUE(settled());
+  EXPECT_EQ(window->viewport().drawn_by_gpu(), !gpu_of_this_machine().software);
+  if (gpu_of_this_machine().software) {
+    EXPECT_TRUE(log.contains("in software")) << log.toStdString();
+  }
+}
+
+// OpenGL's functions are found by libepoxy, which keeps their addresses where they can be changed.
+template <class Function>
+class Instead {
+ public:
+  Instead(Function& function, Function other) : function_(function), real_(function) { function = other; }
+  ~Instead() { function_ = real_; }
+  Instead(const Instead&) = delete;
+  Instead& operator=(const Instead&) = delete;
+
+ private:
+  Function& function_;
+  Function real_;
+};
+
+class FailingWindowVolume : public WindowVolume {
+ protected:
+  void SetUp() override {
+    WindowVolume::SetUp();
+    if (IsSkipped()) return;
+    draw_with(ViewOptions::Drawing::gpu);
+    choose(Mode::volume);
+    ASSERT_TRUE(settled());
+    ASSERT_TRUE(window->viewport().drawn_by_gpu());
+    good_ = screen();
+    choose(Mode::surface);
+    ASSERT_TRUE(settled());
+    ASSERT_TRUE(window->viewport().drawn_by_gpu());
+  }
+  // The processor draws the volume, and says why; the card draws the surface, and the volume where it is told to anew.
+  void expect_processor(const char* why) {
+    choose(Mode::volume);
+    ASSERT_TRUE(settled());
+    EXPECT_FALSE(window->viewport().drawn_by_gpu());
+    EXPECT_TRUE(log.contains("The graphics card cannot draw this")) << log.toStdString();
+    EXPECT_TRUE(log.contains(why)) << log.toStdString();
+    EXPECT_EQ(window->viewport().worker_picture()->image, to_qimage(rendered("cpu")));
+    EXPECT_EQ(screen().pixels, test::to_image(window->viewport().worker_picture()->image).pixels);
+    workspace().set("view.azimuth", "10");
+    ASSERT_TRUE(settled());
+    EXPECT_FALSE(window->viewport().drawn_by_gpu());
+    workspace().reset("view.azimuth");
+    choose(Mode::surface);
+    ASSERT_TRUE(settled());
+    EXPECT_TRUE(window->viewport().drawn_by_gpu());
+  }
+  void expect_card_again() {
+    draw_with(ViewOptions::Drawing::cpu);
+    draw_with(ViewOptions::Drawing::gpu);
+    choose(Mode::volume);
+    ASSERT_TRUE(settled());
+    EXPECT_TRUE(window->viewport().drawn_by_gpu());
+    EXPECT_EQ(compare_images(screen(), good_).max, 0.0);
+  }
+
+  Image good_;
+};
+
+TEST_F(FailingWindowVolume, ByAShader) {
+  static PFNGLSHADERSOURCEPROC real;
+  real = epoxy_glShaderSource;
+  {
+    const Instead other(
+        epoxy_glShaderSource, +[](GLuint shader, GLsizei, const GLchar* const*, const GLint*) {
+          const GLchar* nonsense = "#version 430\nvoid main() { nothing(); }";
+          real(shader, 1, &nonsense, nullptr);
+        });
+    expect_processor("nothing");
+  }
+  expect_card_again();
+}
+
+TEST_F(FailingWindowVolume, ByTheCardsMemory) {
+  {
+    const Instead other(
+        epoxy_glMapBufferRange, +[](GLenum, GLintptr, GLsizeiptr, GLbitfield) -> void* { return nullptr; });
+    expect_processor("memory");
+  }
+  expect_card_again();
+}
+
+TEST_F(FailingWindowVolume, ByALostContext) {
+  {
+    static bool lost;
+    lost = true;
+    const Instead other(
+        epoxy_glGetGraphicsResetStatus,
+        +[]() -> GLenum { return std::exchange(lost, false) ? GL_UNKNOWN_CONTEXT_RESET : GL_NO_ERROR; });
+    expect_processor("the context is lost");
+  }
+  expect_card_again();
+}
+
+}  // namespace
