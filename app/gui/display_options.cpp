@@ -242,7 +242,7 @@ void DisplayOptions::build_overlay(QVBoxLayout& layout) {
   drawing->setObjectName(QStringLiteral("view_drawing"));
   guard_wheel(drawing);
   drawing->addItems({tr("Automatic"), tr("Graphics card"), tr("Processor")});
-  drawing->setToolTip(tr("Who draws surface and atom balls"));
+  drawing->setToolTip(tr("Who draws volume, surface and atom balls"));
   form->addRow(tr("&Drawn by"), drawing);
   const auto show_drawing = [this, drawing] {
     drawing->setCurrentIndex(static_cast<int>(workspace_.view_options().drawing));

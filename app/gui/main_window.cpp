@@ -15,6 +15,7 @@
 #include <QToolButton>
 #include <utility>
 
+#include "app/gui/card_view.h"
 #include "app/gui/copy_picture.h"
 #include "app/gui/crystal_view_dialog.h"
 #include "app/gui/help_window.h"
@@ -173,6 +174,9 @@ void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& pictu
   QString text = ms < 100.0 ? tr("%1 ms").arg(ms, 0, 'f', 1) : tr("%1 ms").arg(ms, 0, 'f', 0);
   if (picture && !picture->complete()) text += tr(", picture %1 of %2").arg(picture->level).arg(picture->levels);
   frame_->setText(text);
+  frame_->setToolTip(
+      picture ? tr("Drawn by the processor")
+              : tr("Drawn by the graphics card: %1").arg(QString::fromStdString(gpu_of_this_machine().renderer)));
 }
 
 void MainWindow::next_mode(int step) {

@@ -223,7 +223,7 @@ void MainWindow::build_view_options(QMenu& menu) {
     connect(&workspace_, &Workspace::view_options_changed, action,
             [this, action, value = option.value] { action->setChecked(workspace_.view_options().*value); });
   }
-  QMenu* drawing = menu.addMenu(tr("Draw surface and atom balls with"));
+  QMenu* drawing = menu.addMenu(tr("Draw volume, surface and atom balls with"));
   auto* group = new QActionGroup(this);
   const std::array<std::pair<ViewOptions::Drawing, QString>, 3> who{
       {{ViewOptions::Drawing::automatic, tr("Graphics card where there is one")},

@@ -25,7 +25,8 @@ struct ViewOptions {
   bool tripod = true;
   bool cut_handles = true;  // of the enabled cut planes, in the window only
   bool upright = true;      // turning keeps z up, as OVITO does; else freely about the picture's axes
-  // Who draws surface and atom balls. automatic: the graphics card where there is one, else (OpenGL in software) cpu.
+  // Who draws volume, surface and atom balls. automatic: the graphics card where there is one, else (OpenGL in
+  // software) cpu.
   enum class Drawing { automatic, gpu, cpu } drawing = Drawing::automatic;
   bool operator==(const ViewOptions&) const = default;
 };
