@@ -75,6 +75,7 @@ bool same_scene(const Parameters& a, const Parameters& b) {
   c.field_of_view = b.field_of_view;
   c.surface = b.surface;
   c.xray = b.xray;
+  c.havs = b.havs;
   c.volume.color_map = b.volume.color_map;
   c.volume.alpha_length = b.volume.alpha_length;
   if (b.mode == Mode::volume_surface) c.volume.color_map = a.volume.color_map;  // of a field that is shown

@@ -109,7 +109,7 @@ void VolumePicture::draw(const Camera& camera, const Parameters& parameters, con
       volume.draw(rays, parameters, ray_window(part, n), lattice, stats, progress);
       const VolumeStats& times = volume.last();
       last_.cells += times.project_ms + times.order_ms + times.faces_ms;
-      last_.pixels += times.draw_ms;
+      last_.pixels += times.draw_ms + times.repair.ms;
       const auto start = std::chrono::steady_clock::now();
       pipeline_->lay_over_background(camera, part, parameters.background, n, detail.stride,
                                      static_cast<GLuint>(target));

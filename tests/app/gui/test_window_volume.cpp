@@ -97,7 +97,7 @@ TEST_F(WindowVolume, IsTheRenderersPicture) {
       const Image havs = rendered("havs");
       // To the rounding of a byte.
       EXPECT_LE(compare_images(image, havs).max, 0.51 / 255.0) << projection << rays;
-      EXPECT_GE(compare_images(image, rendered("cpu")).psnr, 45.0) << projection << rays;
+      EXPECT_LE(compare_images(image, rendered("cpu")).max, 4.0 / 255.0) << projection << rays;
       Image nothing(image.width, image.height);
       std::fill(nothing.pixels.begin(), nothing.pixels.end(), workspace().shown().background);
       EXPECT_GT(compare_images(image, nothing).rmse, 0.01);
