@@ -9,6 +9,7 @@
 #include <new>
 
 #include "core/stopwatch.h"
+#include "render/gl/coarse_volume.h"
 
 namespace atomesh::gui {
 
@@ -59,6 +60,7 @@ void CardView::release() {
   makeCurrent();
   gpu_.release();
   volume_.reset();
+  coarse_.reset();
   doneCurrent();
 }
 
@@ -77,7 +79,7 @@ void CardView::set(const std::shared_ptr<const WorkerPicture>& scene, const Para
       moving_.forget();
     }
     detail_ = moving_.next();
-    if (detail_ == gl::PictureDetail()) {
+    if (detail_.whole()) {
       rest_.stop();
     } else {
       rest_.start();
@@ -100,15 +102,41 @@ void CardView::paintEvent(QPaintEvent* event) {
 void CardView::draw_volume() {
   gpu_.drop_scene();
   if (!volume_) volume_ = std::make_unique<gl::VolumePicture>();
-  volume_->set_scene(scene_->scene);
-  volume_->draw(camera_, parameters_, detail_);
-  if (detail_ == gl::PictureDetail()) moving_.drew_whole(volume_->last(), parameters_.supersampling);
+  if (volume_->scene() != scene_->scene) {
+    coarse_.reset();
+    volume_->set_scene(scene_->scene);
+  }
+  if (detail_.cells < 1.0) {
+    draw_coarse_volume();
+    return;
+  }
+  volume_->draw(camera_, parameters_, {.stride = detail_.stride});
+  if (detail_.whole()) {
+    moving_.drew_whole(volume_->last(), parameters_.supersampling);
+  } else {
+    moving_.drew_moving(volume_->last(), detail_);
+  }
+}
+
+void CardView::draw_coarse_volume() {
+  if (!coarse_) {
+    const auto all = static_cast<double>(scene_->scene->tetrahedra.size());
+    coarse_ = std::make_unique<gl::VolumePicture>();
+    coarse_->set_scene(std::make_shared<const Scene>(
+        gl::coarse_volume(*scene_->scene, static_cast<std::size_t>(detail_.cells * all))));
+  }
+  // Its cells overlap here and there: there is no right order to restore.
+  Parameters parameters = parameters_;
+  parameters.havs.order = HavsOrder::none;
+  coarse_->draw(camera_, parameters, {.stride = detail_.stride});
+  moving_.drew_moving(coarse_->last(), detail_);
 }
 
 void CardView::fail(const QString& message) {
   if (failed_) return;
   failed_ = true;
   volume_.reset();
+  coarse_.reset();
   emit failed(message);
 }
 
@@ -120,6 +148,7 @@ void CardView::paintGL() {
       draw_volume();
     } else {
       volume_.reset();
+      coarse_.reset();
       gpu_.draw(camera_, parameters_);
       context()->functions()->glFinish();
       gl::require_living_context();
@@ -132,7 +161,7 @@ void CardView::paintGL() {
     return;
   }
   const double ms = ms_since(start);
-  const bool whole = detail_ == gl::PictureDetail();
+  const bool whole = detail_.whole();
   if (!overlay_.isNull()) {
     QPainter painter(this);
     painter.drawImage(rect(), overlay_);

@@ -28,6 +28,8 @@ class CardView : public QOpenGLWidget {
   void set(const std::shared_ptr<const WorkerPicture>& scene, const Parameters& parameters, const Camera& camera,
            const QImage& overlay);
   const QImage& overlay() const { return overlay_; }
+  // Of the next picture, and while painted() is emitted of this one.
+  const Detail& detail() const { return detail_; }
 
  signals:
   void painted(double ms, bool whole);  // until the card was done; whether nothing is left out
@@ -42,17 +44,19 @@ class CardView : public QOpenGLWidget {
  private:
   void release();
   void draw_volume();
+  void draw_coarse_volume();
   void fail(const QString& message);
 
   GpuScene gpu_;
   std::unique_ptr<gl::VolumePicture> volume_;
+  std::unique_ptr<gl::VolumePicture> coarse_;  // of fewer cells, once it was needed for this scene
   std::shared_ptr<const WorkerPicture> scene_;
   Parameters parameters_;
   Camera camera_;
   QImage overlay_;
   MovingDetail moving_;
-  gl::PictureDetail detail_;  // of the next picture
-  QTimer rest_{this};         // runs while what is shown is not the whole
+  Detail detail_;      // of the next picture
+  QTimer rest_{this};  // runs while what is shown is not the whole
   bool failed_ = false;
 };
 

@@ -8,18 +8,39 @@ void MovingDetail::drew_whole(const gl::VolumePicture::Times& times, int n) {
   // Of a view that was there before only the pixels are drawn anew.
   const double cells = times.cells > 0.0 ? times.cells : known_ ? whole_.cells : 0.0;
   whole_ = {cells, times.pixels};
+  if (n != n_ || !known_) stride_ = 0;
   n_ = n;
   known_ = true;
 }
 
-gl::PictureDetail MovingDetail::next() const {
-  if (!known_ || whole_.cells + whole_.pixels <= moving_budget) return {};
-  // Beyond what the cells leave it nothing is gained by ever fewer pixels.
-  const double left = std::max(moving_budget - whole_.cells, 0.25 * moving_budget);
-  for (const int stride : {2, 4}) {
-    if (whole_.pixels / (n_ * n_ * stride * stride) <= left) return {.stride = stride};
+void MovingDetail::drew_moving(const gl::VolumePicture::Times& times, const Detail& detail) {
+  stride_ = detail.stride;
+  if (times.cells + times.pixels > moving_budget) {
+    stride_ = std::min(2 * stride_, 8);
+  } else if (stride_ > 1) {
+    // Half the stride is four times the rays; none left out, n × n times.
+    const double more = stride_ == 2 ? 4.0 * n_ * n_ : 4.0;
+    if (times.cells + more * times.pixels <= moving_budget) stride_ /= 2;
   }
-  return {.stride = 8};
+}
+
+Detail MovingDetail::next() const {
+  if (!known_ || whole_.cells + whole_.pixels <= moving_budget) return {};
+  Detail detail;
+  // Half of the time is the cells', half the pixels'; what one does not need the other has.
+  const double for_cells = std::max(0.5 * moving_budget, moving_budget - whole_.pixels);
+  if (whole_.cells > for_cells) detail.cells = std::max(for_cells / whole_.cells, 1e-3);
+  const double for_pixels = moving_budget - std::min(whole_.cells, for_cells);
+  if (stride_ > 0) {
+    detail.stride = stride_;
+    return detail;
+  }
+  double pixels = whole_.pixels;
+  while (pixels > for_pixels && detail.stride < 8) {
+    detail.stride *= 2;
+    pixels = whole_.pixels / (n_ * n_ * detail.stride * detail.stride);
+  }
+  return detail;
 }
 
 }  // namespace atomesh::gui

@@ -8,19 +8,29 @@ namespace atomesh::gui {
 // Milliseconds for a picture of a view that moves; who takes no longer is drawn whole.
 inline constexpr double moving_budget = 33.0;
 
+struct Detail {
+  int stride = 1;      // gl::PictureDetail::stride
+  double cells = 1.0;  // so large a part of them (gl::coarse_volume())
+  bool whole() const { return stride == 1 && cells == 1.0; }
+  bool operator==(const Detail&) const = default;
+};
+
 class MovingDetail {
  public:
   // Another scene, size or number of rays: nothing is known of how long a picture takes.
   void forget() { known_ = false; }
+  // A picture of a view that moves took so long: the next may have more rays, or fewer.
+  void drew_moving(const gl::VolumePicture::Times& times, const Detail& detail);
   // A whole picture took so long, of n × n rays a pixel.
   void drew_whole(const gl::VolumePicture::Times& times, int n);
   // For the next picture of a view that moves.
-  gl::PictureDetail next() const;
+  Detail next() const;
 
  private:
   bool known_ = false;
   gl::VolumePicture::Times whole_;
   int n_ = 1;
+  int stride_ = 0;  // as drew_moving() found; 0 where it was not called since
 };
 
 }  // namespace atomesh::gui

@@ -8,9 +8,9 @@ namespace {
 
 TEST(MovingDetail, IsAllWhereThereIsTime) {
   MovingDetail detail;
-  EXPECT_EQ(detail.next(), gl::PictureDetail());  // nothing known
+  EXPECT_EQ(detail.next(), Detail());  // nothing known
   detail.drew_whole({.cells = 10.0, .pixels = 20.0}, 1);
-  EXPECT_EQ(detail.next(), gl::PictureDetail());
+  EXPECT_EQ(detail.next(), Detail());
 }
 
 TEST(MovingDetail, IsAsManyRaysAsThereIsTimeFor) {
@@ -25,21 +25,48 @@ TEST(MovingDetail, IsAsManyRaysAsThereIsTimeFor) {
   detail.drew_whole({.cells = 10.0, .pixels = 800.0}, 4);
   EXPECT_EQ(detail.next().stride, 2);
   detail.forget();
-  EXPECT_EQ(detail.next(), gl::PictureDetail());
+  EXPECT_EQ(detail.next(), Detail());
 }
 
 TEST(MovingDetail, KnowsTheCellsTimeThoughTheViewWasThere) {
   MovingDetail detail;
   detail.drew_whole({.cells = 30.0, .pixels = 40.0}, 1);
-  const gl::PictureDetail before = detail.next();
-  EXPECT_NE(before, gl::PictureDetail());
+  const Detail before = detail.next();
+  EXPECT_NE(before, Detail());
   detail.drew_whole({.cells = 0.0, .pixels = 30.0}, 1);
-  EXPECT_NE(detail.next(), gl::PictureDetail());
+  EXPECT_NE(detail.next(), Detail());
 }
 
-TEST(MovingDetail, DoesNotSaveOnPixelsWhatCellsTake) {
+TEST(MovingDetail, IsFewerCellsWhereTheyTakeLong) {
   MovingDetail detail;
-  detail.drew_whole({.cells = 500.0, .pixels = 30.0}, 1);
+  detail.drew_whole({.cells = 10.0, .pixels = 80.0}, 1);
+  EXPECT_EQ(detail.next().cells, 1.0);
+  detail.drew_whole({.cells = 100.0, .pixels = 3.0}, 1);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 1, .cells = 0.3}));
+  detail.drew_whole({.cells = 165.0, .pixels = 33.0}, 1);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 2, .cells = 0.1}));
+}
+
+TEST(MovingDetail, FollowsWhatPicturesOnTheWayTake) {
+  MovingDetail detail;
+  const auto moved = [&](double cells, double pixels) {
+    detail.drew_moving({.cells = cells, .pixels = pixels}, detail.next());
+    return detail.next().stride;
+  };
+  detail.drew_whole({.cells = 10.0, .pixels = 4000.0}, 2);
+  EXPECT_EQ(detail.next().stride, 8);
+  EXPECT_EQ(moved(10.0, 5.0), 4);
+  EXPECT_EQ(moved(10.0, 5.0), 2);
+  EXPECT_EQ(moved(10.0, 2.0), 2);  // 16 times as many rays would take 32
+  EXPECT_EQ(moved(10.0, 5.0), 2);
+  EXPECT_EQ(moved(30.0, 5.0), 4);
+  EXPECT_EQ(moved(30.0, 5.0), 8);
+  EXPECT_EQ(moved(30.0, 5.0), 8);
+  // A rest in between changes nothing.
+  detail.drew_whole({.cells = 10.0, .pixels = 4000.0}, 2);
+  EXPECT_EQ(detail.next().stride, 8);
+  detail.forget();
+  detail.drew_whole({.cells = 10.0, .pixels = 80.0}, 1);
   EXPECT_EQ(detail.next().stride, 2);
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <QTest>
-#include <array>
 #include <memory>
 
 #include "app/gui/main_window.h"
@@ -13,11 +12,10 @@
 #include "render/renderer.h"
 #include "render/scene.h"
 #include "tests/app/gui/window_test.h"
+#include "tests/render/fixtures.h"
 #include "tests/support/temporary_folder.h"
 
 namespace atomesh::test {
-
-inline constexpr std::array all_modes{Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
 
 class WindowFixture : public ::testing::Test {
  protected:
