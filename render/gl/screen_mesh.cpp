@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t vertices_per_range = 16384;
 constexpr std::size_t cells_per_range = 16384;
 constexpr double near_radii = 1.0 / 2000.0;
-constexpr std::int32_t guard = guard_pixels * subpixels;
+constexpr int guard_margin = 64;
 
 // Sides of the guard, and what is too near, as bits.
 enum Side : std::int32_t { too_near = 1, left = 2, right = 4, above = 8, below = 16 };
@@ -47,6 +47,8 @@ ScreenMesh::ScreenMesh(const Scene& scene, const Camera& camera, const PixelGrid
   view_.reference = view_.perspective ? std::max(depth, 0.25 * radius) : depth;
   view_.near = view_.perspective ? near_radii * radius : 0.0;
   view_.grid = grid;
+  // The smaller it is, the less do large triangles cost of what floats hold.
+  view_.guard = std::min(guard_pixels, std::max(grid.columns, grid.rows) / 2 + guard_margin);
   if (grid.columns == 0 || grid.rows == 0 || scene.tetrahedra.empty()) return;
   project(camera);
   find_cells(map, progress);
@@ -62,9 +64,12 @@ ScreenVertex ScreenMesh::on_screen(const Vec3& p, float scalar) const {
   vertex.w = static_cast<float>(view_.perspective ? -view_.reference * scale : p.z - view_.reference);
   vertex.u = view_.perspective ? -scalar * vertex.w : scalar;
   // Beyond the guard by less than a subpixel is on it.
-  constexpr double most = guard + 0.75;
-  const std::int32_t sides = (p.z < view_.near ? too_near : 0) | (column < -most ? left : 0) |
-                             (column > most ? right : 0) | (row < -most ? above : 0) | (row > most ? below : 0);
+  const std::int32_t guard = view_.guard * subpixels;
+  const double most = guard + 0.75;
+  // Where something behind the eye is on the image plane says nothing about its side.
+  const std::int32_t sides = p.z < view_.near ? too_near
+                                              : (column < -most ? left : 0) | (column > most ? right : 0) |
+                                                    (row < -most ? above : 0) | (row > most ? below : 0);
   if (sides != 0) {
     vertex.column = clipped;
     vertex.row = sides;
@@ -144,10 +149,10 @@ void ScreenMesh::clip_cells(const Camera& camera) {
   const PixelGrid& grid = view_.grid;
   const Vec3 offset = scene_.center - camera.eye;
   // Image-plane coordinates of the guard's sides.
-  const double x_low = grid.x + (grid.columns / 2 - 0.5 - guard_pixels) * grid.dx;
-  const double x_high = grid.x + (grid.columns / 2 - 0.5 + guard_pixels) * grid.dx;
-  const double y_high = grid.y - (grid.rows / 2 - 0.5 - guard_pixels) * grid.dy;
-  const double y_low = grid.y - (grid.rows / 2 - 0.5 + guard_pixels) * grid.dy;
+  const double x_low = grid.x + (grid.columns / 2 - 0.5 - view_.guard) * grid.dx;
+  const double x_high = grid.x + (grid.columns / 2 - 0.5 + view_.guard) * grid.dx;
+  const double y_high = grid.y - (grid.rows / 2 - 0.5 - view_.guard) * grid.dy;
+  const double y_low = grid.y - (grid.rows / 2 - 0.5 + view_.guard) * grid.dy;
   const auto side = [&](const Vec3& normal, double at) {
     return view_.perspective ? HalfSpace{{normal.x, normal.y, -at}, 0.0} : HalfSpace{normal, at};
   };

@@ -83,6 +83,7 @@ struct ScreenView {
   // hold the reciprocals of both smaller ones and the sample's. 0 of parallel projection.
   double near = 0.0;
   PixelGrid grid;
+  int guard = guard_pixels;             // vertices lie so many pixels from the grid's middle at most
   float first_w = 0.0F, last_w = 1.0F;  // of everything that is drawn
 };
 
