@@ -254,7 +254,16 @@ void Volume::draw_slab(const Slab& slab) const {
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
   glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
                         reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
-  glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+  if (!driver_.software) {
+    glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
+    return;
+  }
+  // Software sorts triangles into tiles before it fills them: in small portions they are still in the caches then, and
+  // its threads have something to do sooner (a tenth of the time, llvmpipe).
+  for (std::size_t i = 0; i < slab.first.size(); ++i) {
+    glDrawArrays(GL_TRIANGLES, slab.first[i], slab.count[i]);
+    glFlush();
+  }
 }
 
 // What a repair asks for: of the parts those alone that lie where pixels are marked.
