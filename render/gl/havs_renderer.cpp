@@ -64,11 +64,16 @@ class HavsFrame final : public Frame {
             Progress& progress) const override {
     card_.with_volume(this, scene_, [&](gl::Volume& volume) {
       const int side = std::min(window_side, volume.largest_side());
+      const auto along = [side](int length) { return (length + side - 1) / side; };
+      const double share = 1.0 / std::max(1, along(window_.width) * along(window_.height));
+      double begin = 0.0;
       for (int top = 0; top < window_.height; top += side) {
         for (int left = 0; left < window_.width; left += side) {
           const PixelWindow part{window_.left + left, window_.top + top, std::min(side, window_.width - left),
                                  std::min(side, window_.height - top)};
-          volume.draw(camera_, parameters_, part, lattice, stats, progress, ray_ends(channels, part, lattice));
+          Progress of_part(progress, begin, begin + share);
+          begin += share;
+          volume.draw(camera_, parameters_, part, lattice, stats, of_part, ray_ends(channels, part, lattice));
           const auto start = std::chrono::steady_clock::now();
           copy(volume.read(), LatticeGrid(lattice, part), image);
           stats.render_ms += ms_since(start);

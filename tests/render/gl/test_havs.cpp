@@ -129,6 +129,30 @@ TEST(HavsRenderer, DrawsNothingOfAnEmptyScene) {
   for (const Vec4f& pixel : drawn.image.pixels) EXPECT_EQ(pixel, Vec4f(0.0F));
 }
 
+// Wider than what is drawn at once.
+TEST(HavsRenderer, PutsLargePicturesTogether) {
+  Subject subject = subject_of(Projection::perspective, 2600, 20);
+  subject.parameters.zoom = 0.02;
+  subject.parameters.field_of_view = 120.0;
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, 2600, 20);
+  // The middle of the sample stands where two windows meet.
+  subject.camera.pixel /= 40.0;
+  subject.camera.eye -= (2048.0 - 1300.0) * subject.camera.pixel *
+                        glm::dot(subject.scene.bounds.center() - subject.camera.eye, subject.camera.forward) *
+                        subject.camera.right;
+  std::vector<double> fractions;
+  Progress progress([&](std::string_view, double fraction) { fractions.push_back(fraction); });
+  RenderStats stats;
+  const Image drawn =
+      find_renderer("havs").draw(subject.scene, subject.camera, subject.parameters, stats, {}, progress);
+  const Drawn other = draw(find_renderer("cpu"), subject.scene, subject.camera, subject.parameters);
+  EXPECT_LE(compare_images(drawn, other.image).max, 4.0 / 255.0);
+  EXPECT_GT(other.image.at(2040, 10).a, 0.1F);
+  EXPECT_GT(other.image.at(2056, 10).a, 0.1F);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.back(), 1.0);
+}
+
 TEST(HavsRenderer, CanBeCancelled) {
   const Subject subject = subject_of(Projection::perspective, 64, 64);
   Progress progress;
