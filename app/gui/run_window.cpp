@@ -29,6 +29,8 @@ void set_surface_format() {
   format.setProfile(QSurfaceFormat::CoreProfile);
   format.setAlphaBufferSize(8);
   format.setDepthBufferSize(24);
+  // A card that is reset makes the context invalid; without this some drivers end the program.
+  format.setOption(QSurfaceFormat::ResetNotification);
   QSurfaceFormat::setDefaultFormat(format);
 }
 
