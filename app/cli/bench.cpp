@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/cli/bench_error.h"
+#include "app/cli/bench_havs.h"
 #include "app/cli/bench_preprocess.h"
 #include "app/cli/bench_render.h"
 #include "app/cli/bench_seed_table.h"
@@ -34,7 +35,7 @@ struct BenchArguments {
 };
 
 const std::vector<std::string>& suite_names() {
-  static const std::vector<std::string> names{"seed-table", "preprocess", "render", "error", "window"};
+  static const std::vector<std::string> names{"seed-table", "preprocess", "render", "error", "havs", "window"};
   return names;
 }
 
@@ -75,12 +76,13 @@ int run_bench(const BenchArguments& arguments, Session& session) {
     options.full = arguments.full;
     if (arguments.repeats > 0) options.repeats = arguments.repeats;
     bench_preprocess(options, session, result);
-  } else if (arguments.suite == "render" || arguments.suite == "error") {
+  } else if (arguments.suite == "render" || arguments.suite == "error" || arguments.suite == "havs") {
     RenderBenchOptions options = arguments.render;
     options.parts = arguments.parts;
     options.full = arguments.full;
     if (arguments.repeats > 0) options.repeats = arguments.repeats;
-    (arguments.suite == "render" ? bench_render : bench_error)(options, session, result);
+    const auto run = arguments.suite == "render" ? bench_render : arguments.suite == "error" ? bench_error : bench_havs;
+    run(options, session, result);
   } else if (arguments.suite == "window") {
     WindowBenchOptions options;
     options.quick = arguments.render.quick;
@@ -113,27 +115,30 @@ Command add_bench(CLI::App& app) {
                  "preprocess: speed, memory and truth of preprocessing, beside CGAL, TetGen, VTK and LAMMPS; "
                  "render: speed, errors and memory of pictures, beside VTK's volume mappers and the seed; "
                  "error: speed against error of every integrator, errors of all data sets and modes, hard cases; "
+                 "havs: volumes on OpenGL beside the CPU renderer and VTK's projected tetrahedra; "
                  "window: how soon the window shows its first picture")
       ->required();
   app.add_option("--sample", seed_table.samples, "seed-table: only these samples; see atomesh sample --list")
       ->type_name("NAME…");
   app.add_option("--part", arguments->parts,
-                 fmt::format("Only these parts; preprocess: {}; render: {}; error: {}",
+                 fmt::format("Only these parts; preprocess: {}; render: {}; error: {}; havs: {}",
                              fmt::join(preprocess_bench_parts(), ", "), fmt::join(render_bench_parts(), ", "),
-                             fmt::join(error_bench_parts(), ", ")))
+                             fmt::join(error_bench_parts(), ", "), fmt::join(havs_bench_parts(), ", ")))
       ->type_name("NAME…");
   app.add_flag("--full", arguments->full,
-               "preprocess, render, error: every case, and the largest (about half an hour)");
-  app.add_option("--case", render.cases,
-                 "render, error: only these data sets: a sample, lattice-N, lattice-N-random, comb, blunt-fin, post, "
-                 "usm3d-box, "
-                 "quake, chaste-cube, raptor")
+               "preprocess, render, error, havs: every case, and the largest (about half an hour)");
+  app.add_option(
+         "--case", render.cases,
+         "render, error, havs: only these data sets: a sample, lattice-N, lattice-N-random, comb, blunt-fin, post, "
+         "usm3d-box, "
+         "quake, chaste-cube, raptor")
       ->type_name("NAME…");
-  app.add_option("--data", render.data, "render, error: folder of the public data sets [../shared/data/volume]")
+  app.add_option("--data", render.data, "render, error, havs: folder of the public data sets [../shared/data/volume]")
       ->type_name("FOLDER");
-  app.add_flag("!--no-peers", render.peers, "render, error: without VTK's mappers");
+  app.add_flag("!--no-peers", render.peers, "render, error, havs: without VTK's mappers");
   app.add_flag("!--no-z-sweep", render.z_sweep, "render: without the slowest of VTK's mappers");
-  app.add_flag("--quick", render.quick, "render, error, window: tiny data sets and pictures, to see that it works");
+  app.add_flag("--quick", render.quick,
+               "render, error, havs, window: tiny data sets and pictures, to see that it works");
   app.add_option_function<std::string>(
          "--atoms", [arguments](const std::string& text) { arguments->atoms = parse_count("--atoms", text); },
          "Atoms of each sample; 0: as many as the seed had, or as the part is defined for [0]")
@@ -144,10 +149,10 @@ Command add_bench(CLI::App& app) {
            std::tie(seed_table.width, seed_table.height) = parse_size(text);
            std::tie(render.width, render.height) = parse_size(text);
          },
-         "seed-table: pixels of the pictures [512x512]; render, error: of all [each part's own]")
+         "seed-table: pixels of the pictures [512x512]; render, error, havs: of all [each part's own]")
       ->type_name("WxH");
   app.add_option("--repeats", arguments->repeats,
-                 "Measured runs of each [seed-table, render, error: 3, preprocess: 1, window: 5]")
+                 "Measured runs of each [seed-table, render, error, havs: 3, preprocess: 1, window: 5]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app.add_option("--markdown", arguments->markdown, "Also write the tables as Markdown")->type_name("FILE.md");

@@ -53,6 +53,7 @@ class Volume {
 
   int largest_side() const { return largest_side_; }
   const VolumeStats& last() const { return last_; }
+  const PreintegrationTable::Stats& table() const { return table_.stats(); }
   // What was drawn last: RGBA32F, premultiplied RGB and coverage, the picture's upper row first (at texture coordinate
   // 0). The texture may be larger than the picture, which begins at (0, 0).
   const Texture& texture() const { return color_; }
