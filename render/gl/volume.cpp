@@ -170,7 +170,7 @@ void Volume::find_cells(const Camera& camera, const PixelGrid& grid, const Param
   const Clock::time_point sorting = Clock::now();
   // By faces there is hardly a pixel to repair, but it takes one core 50 ms for a million cells: a card repairs the few
   // pixels that a Delaunay mesh's keys leave sooner.
-  if (!order_) order_ = std::make_unique<CellOrder>(*scene_, driver_.software || !scene_->delaunay);
+  if (!order_) order_ = std::make_unique<CellOrder>(*scene_, by_faces_.value_or(driver_.software || !scene_->delaunay));
   std::vector<Index> order;
   CellOrderStats order_stats;
   const std::vector<Index> unseen =
@@ -375,6 +375,7 @@ void Volume::draw(const Camera& camera, const Parameters& parameters, const Pixe
       use(gather_);
       draw_marked(progress);
     };
+    glFinish();  // what has been drawn is not the repair's time; it has to look at it anyway
     repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
   }
   glFinish();

@@ -43,6 +43,10 @@ class Volume {
   // What is drawn from now on: a scene of mode volume. Keeps a reference; what was prepared for another is dropped.
   void set_scene(const Scene& scene);
 
+  // Before set_scene(): whether cells are put in order by the faces they share; else by their keys alone, which is what
+  // repairs are measured on. By itself it does what is faster on the driver.
+  void set_order_by_faces(bool by_faces) { by_faces_ = by_faces; }
+
   // Draws the lattice's pixels of the window, as a picture of their own; neither side more than largest_side(). What
   // was found for the same view is used again: the cells are not projected and sorted anew when nothing but colours
   // changes. Adds to `stats`; waits for OpenGL to finish. Throws CancelledError, UnavailableError (no memory, a lost
@@ -104,6 +108,7 @@ class Volume {
   int largest_side_ = 0;
   int viewport_side_ = 0;
   const Scene* scene_ = nullptr;
+  std::optional<bool> by_faces_;
   std::optional<View> view_;
   std::unique_ptr<CellOrder> order_;
   std::unique_ptr<ScreenMesh> mesh_;

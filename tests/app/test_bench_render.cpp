@@ -1,6 +1,7 @@
 // bench render at tiny sizes: every part runs, and its rows say what machines read.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -14,8 +15,8 @@ using nlohmann::json;
 class BenchRender : public ::testing::Test {
  protected:
   // The rows of one part, each with the keys every row has.
-  json rows(const std::string& part, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments{"bench", "render", "--quick", "--part", part, "--json", "-", "--repeats", "1"};
+  json rows(const std::string& part, std::vector<std::string> more = {}, const std::string& suite = "render") {
+    std::vector<std::string> arguments{"bench", suite, "--quick", "--part", part, "--json", "-", "--repeats", "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = place.run(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -165,6 +166,36 @@ TEST_F(BenchRender, AMissingDataSetIsANote) {
   const json measured = rows("rates", {"--case", "comb", "lattice-8", "--data", "nowhere"});
   EXPECT_NE(err.find("nowhere"), std::string::npos) << err;
   for (const json& row : measured) EXPECT_EQ(row["case"], "lattice-8, iso");
+}
+
+TEST_F(BenchRender, VolumesOnOpenGlStandBesideTheCpuAndVtk) {
+  std::set<std::string> what;
+  for (const json& row : rows("frames", {}, "havs")) {
+    what.insert(row["what"]);
+    EXPECT_GT(row["frames_per_second"], 0.0);
+    EXPECT_FALSE(row["settings"]["opengl"].get<std::string>().empty());
+    if (!row["what"].get<std::string>().starts_with("havs")) continue;
+    EXPECT_GT(row["tetrahedra_drawn"], 1000U);
+    EXPECT_EQ(row["wrong_pixels"], 0U);
+    EXPECT_LT(row["max_error"], 4.0 / 255.0);
+    EXPECT_GT(row["psnr"], 45.0);
+  }
+  EXPECT_TRUE(what.contains("havs, exact") && what.contains("havs, table") && what.contains("cpu"));
+  EXPECT_TRUE(what.contains("VTK projected tetrahedra") || err.find("no display") != std::string::npos) << err;
+}
+
+TEST_F(BenchRender, MoreOfAKBufferLeavesFewerPixelsWrong) {
+  std::uint64_t before = std::numeric_limits<std::uint64_t>::max();
+  for (const json& row : rows("order", {"--case", "lattice-12-random"}, "havs")) {
+    const std::uint64_t wrong = row["wrong_pixels"];
+    if (row["k"] == 0) {
+      EXPECT_EQ(wrong, 0U);
+      continue;
+    }
+    EXPECT_LE(wrong, before);
+    before = wrong;
+  }
+  EXPECT_EQ(before, 0U);
 }
 
 }  // namespace
