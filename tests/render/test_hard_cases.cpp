@@ -198,7 +198,7 @@ TEST_P(HardCases, SliversAreMetOnce) {
   const Parameters parameters = constant_density(Mode::volume, 1e-6);
   const Scene scene = make_scene(hard().material, parameters);
   std::uint64_t short_ones = 0;
-  for (const HardView& view : views_of(hard())) {
+  for (const HardView& view : hard().views) {
     // One tile, all of whose rays are counted. The rays are the view's own.
     Camera camera = moved_beside(view.camera, view.camera.width % 2 == 1 ? 0.5 : 0.0, 0.0);
     camera = moved_beside(camera, 0.0, view.camera.height % 2 == 1 ? 0.5 : 0.0);
