@@ -49,8 +49,9 @@ class Frame {
                     Progress& progress) const = 0;
 };
 
-// A renderer draws all five modes of a Scene ("havs": volume, and throws UsageError for the others). It returns the picture over a transparent background: premultiplied RGB
-// and coverage A (0 where the ray meets nothing), so that the background is laid under it in one place.
+// A renderer draws all five modes of a Scene ("havs": volume, and throws UsageError for the others). It returns the
+// picture over a transparent background: premultiplied RGB and coverage A (0 where the ray meets nothing), so that the
+// background is laid under it in one place.
 class Renderer {
  public:
   virtual ~Renderer() = default;

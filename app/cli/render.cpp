@@ -207,7 +207,8 @@ Command add_render(CLI::App& app) {
   app.add_option("--view", arguments->view,
                  "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees")
       ->type_name("VIEW");
-  app.add_option("--renderer", arguments->renderer, "auto, cpu, havs (OpenGL; mode volume), or reference: the judge, exact and slow")
+  app.add_option("--renderer", arguments->renderer,
+                 "auto, cpu, havs (OpenGL; mode volume), or reference: the judge, exact and slow")
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option("--field", arguments->field, "The scalar that the volume shows, as --set volume.field=NAME")

@@ -34,8 +34,8 @@ static_assert(fast_beside > cell_projection::ray_shift);
 // The judge's pass by an infinitely small way, but the known answer is computed in double.
 constexpr double judge_beside = 0x1p-30;
 
-// Under the sanitizers, which look at what the code does and not at what comes out, a view of each case has to do: there
-// the whole catalogue would take minutes.
+// Under the sanitizers, which look at what the code does and not at what comes out, a view of each case has to do:
+// there the whole catalogue would take minutes.
 #ifdef __SANITIZE_ADDRESS__
 constexpr std::size_t most_views = 1;
 #else
