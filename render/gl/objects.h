@@ -1,5 +1,5 @@
 // OpenGL's objects as values that give back what they hold. All of it, destructors included, with the context current
-// that made them (or after that context is gone and abandon_objects() said so).
+// that made them.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -28,8 +28,6 @@ class Handle {
   }
   GLuint name() const { return name_; }
   explicit operator bool() const { return name_ != 0; }
-  // The context is gone, and the object with it.
-  void abandon() { name_ = 0; }
 
  private:
   GLuint name_ = 0;
