@@ -2,6 +2,8 @@
 // renderer "havs": known answers first, then the judge.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <span>
 
 #include "app/cli/hard_case_errors.h"
@@ -22,12 +24,15 @@ constexpr double length_limit = 0.01;
 constexpr double color_limit = 4.0 / 255.0;
 
 // Under the sanitizers, which look at what the code does and not at what comes out, a view of each case has to do.
-std::span<const HardView> views_of(const HardCase& hard) {
 #ifdef __SANITIZE_ADDRESS__
-  return std::span(hard.views).first(1);
+constexpr std::size_t most_views = 1;
+constexpr std::size_t least_pixels = 10000;
 #else
-  return hard.views;
+constexpr std::size_t most_views = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t least_pixels = 50000;
 #endif
+std::span<const HardView> views_of(const HardCase& hard) {
+  return std::span(hard.views).first(std::min(hard.views.size(), most_views));
 }
 
 const std::vector<HardCase>& catalogue() {
@@ -58,7 +63,7 @@ TEST(HavsHardCases, OpticalDepthIsTheLengthInside) {
       pixels += error.pixels;
     }
   }
-  EXPECT_GT(pixels, 10000U);
+  EXPECT_GT(pixels, least_pixels);
 }
 
 TEST(HavsHardCases, PicturesAreTheJudges) {
