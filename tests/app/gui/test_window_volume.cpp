@@ -16,6 +16,7 @@
 #include "render/gl/context.h"
 #include "tests/app/gui/window_fixture.h"
 #include "tests/render/fixtures.h"
+#include "tests/render/gl/instead.h"
 
 namespace {
 
@@ -221,20 +222,6 @@ TEST_F(WindowVolume, IsTheProcessorsWhereOpenGlIsSoftwareAndNobodySaysOtherwise)
     EXPECT_TRUE(log.contains("in software")) << log.toStdString();
   }
 }
-
-// OpenGL's functions are found by libepoxy, which keeps their addresses where they can be changed.
-template <class Function>
-class Instead {
- public:
-  Instead(Function& function, Function other) : function_(function), real_(function) { function = other; }
-  ~Instead() { function_ = real_; }
-  Instead(const Instead&) = delete;
-  Instead& operator=(const Instead&) = delete;
-
- private:
-  Function& function_;
-  Function real_;
-};
 
 class FailingWindowVolume : public WindowVolume {
  protected:

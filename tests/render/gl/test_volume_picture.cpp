@@ -12,6 +12,7 @@
 #include "render/gl/objects.h"
 #include "render/gl/volume_picture.h"
 #include "tests/render/fixtures.h"
+#include "tests/render/gl/instead.h"
 
 namespace atomesh {
 namespace {
@@ -162,20 +163,6 @@ TEST_P(FinishedVolume, IsOfVolumesWithNothingInThem) {
   subject.camera.width = 0;
   EXPECT_THROW(picture.draw(subject.camera, subject.parameters), UsageError);
 }
-
-// OpenGL's functions are found by libepoxy, which keeps their addresses where they can be changed.
-template <class Function>
-class Instead {
- public:
-  Instead(Function& function, Function other) : function_(function), real_(function) { function = other; }
-  ~Instead() { function_ = real_; }
-  Instead(const Instead&) = delete;
-  Instead& operator=(const Instead&) = delete;
-
- private:
-  Function& function_;
-  Function real_;
-};
 
 void expect_unavailable(const std::function<void()>& act, const std::string& word) {
   try {
