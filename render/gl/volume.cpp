@@ -5,11 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "render/gl/front_faces.h"
+#include "render/gl/processor_cells.h"
 #include "render/gl/state_guard.h"
 
 namespace atomesh::gl {
@@ -18,14 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A thread's share of a slab, and a slab: 19 MB of vertices.
-constexpr std::size_t cells_per_share = 4096;
-constexpr std::size_t cells_per_slab = 16 * cells_per_share;
-constexpr std::size_t vertices_per_cell = 3 * most_faces;
-constexpr std::size_t slab_bytes = cells_per_slab * vertices_per_cell * sizeof(FaceVertex);
-
-// Slabs of a view that is drawn again are kept up to so many bytes.
-constexpr std::size_t kept_bytes = std::size_t{512} << 20;
+constexpr std::size_t cells_per_range = 4096;
 
 // Of the stencil buffer: a cell came that begins before the last one of its pixel.
 constexpr GLuint disorder_bit = 1;
@@ -36,25 +31,10 @@ GLint integer(GLenum name) {
   return value;
 }
 
-// Those of `count` cells that are not among `cells`, which ascend.
-std::vector<Index> cells_beside(std::span<const Index> cells, std::size_t count) {
-  std::vector<Index> others;
-  others.reserve(count - cells.size());
-  std::size_t next = 0;
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    if (next < cells.size() && cells[next] == cell) {
-      ++next;
-    } else {
-      others.push_back(static_cast<Index>(cell));
-    }
-  }
-  return others;
-}
-
 // No segment is longer.
 double longest_edge(const Scene& scene) {
-  std::vector<float> longest((scene.tetrahedra.size() + cells_per_share - 1) / cells_per_share);
-  parallel_for(scene.tetrahedra.size(), cells_per_share, [&](std::size_t begin, std::size_t end) {
+  std::vector<float> longest((scene.tetrahedra.size() + cells_per_range - 1) / cells_per_range);
+  parallel_for(scene.tetrahedra.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
     float most = 0.0F;
     for (std::size_t i = begin; i < end; ++i) {
       const Tetrahedron& t = scene.tetrahedra[i];
@@ -65,7 +45,7 @@ double longest_edge(const Scene& scene) {
         }
       }
     }
-    longest[begin / cells_per_share] = std::sqrt(most);
+    longest[begin / cells_per_range] = std::sqrt(most);
   });
   return longest.empty() ? 0.0 : static_cast<double>(*std::max_element(longest.begin(), longest.end()));
 }
@@ -75,6 +55,25 @@ bool same(const Camera& a, const Camera& b) {
 }
 
 }  // namespace
+
+// Of one call of proceed(). Portions are half of what fits into the rest of the time each, until an eighth of it is
+// left: they are not all alike.
+struct Volume::Pace {
+  explicit Pace(double milliseconds) : budget(milliseconds) {}
+  bool limited() const { return std::isfinite(budget); }
+  bool over() const { return ms_since(start) >= 0.875 * budget; }
+  std::size_t portion(double places_per_ms) const {
+    if (!limited()) return cells_per_slab;
+    if (!(places_per_ms > 0.0)) return first_portion;
+    const double fit = 0.5 * std::max(budget - ms_since(start), 0.0) * places_per_ms;
+    return static_cast<std::size_t>(std::clamp<double>(fit, least_portion, cells_per_slab));
+  }
+
+  static constexpr std::size_t first_portion = 64;
+  static constexpr std::size_t least_portion = 16;
+  Clock::time_point start = Clock::now();
+  double budget;
+};
 
 Volume::Volume() : driver_(current_driver()) {
   require_sufficient_driver();
@@ -135,7 +134,7 @@ void Volume::end_rays(std::span<const float> ray_ends) {
   if (ray_ends_.width() < columns_ || ray_ends_.height() < rows_) {
     ray_ends_ = Texture::make_2d(GL_R32F, std::max(columns_, ray_ends_.width()), std::max(rows_, ray_ends_.height()));
   }
-  const ScreenView& view = mesh_->view();
+  const ScreenView& view = cells_->view();
   std::vector<float> ends(ray_ends.size());
   std::transform(ray_ends.begin(), ray_ends.end(), ends.begin(), [&](float depth) {
     const auto z = static_cast<double>(depth);
@@ -151,8 +150,9 @@ void Volume::end_rays(std::span<const float> ray_ends) {
 
 void Volume::set_scene(const Scene& scene) {
   scene_ = &scene;
+  begun_.reset();
   view_.reset();
-  order_.reset();
+  cells_.reset();
   longest_segment_ = 0.0;
 }
 
@@ -160,52 +160,31 @@ bool Volume::same_view(const Camera& camera, const PixelGrid& grid, const Parame
   return view_ && same(view_->camera, camera) && view_->grid == grid && view_->color_map == parameters.volume.color_map;
 }
 
-void Volume::find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters,
-                        const Progress& progress) {
+bool Volume::project(const Begun& begun, const Progress& progress) {
+  last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
+  last_.repair = {};
+  resize(begun.grid.columns, begun.grid.rows);
+  if (begun.grid.columns == 0 || begun.grid.rows == 0) return false;
+  if (same_view(begun.camera, begun.grid, begun.parameters)) return true;
   view_.reset();
   const Clock::time_point start = Clock::now();
-  mesh_ = std::make_unique<ScreenMesh>(*scene_, camera, grid,
-                                       cell_projection::MapIntervals(parameters.volume.color_map), progress);
-  last_.project_ms = ms_since(start);
-  const Clock::time_point sorting = Clock::now();
   // By faces there is hardly a pixel to repair, but it takes one core 50 ms for a million cells: a card repairs the few
   // pixels that a Delaunay mesh's keys leave sooner.
-  if (!order_) order_ = std::make_unique<CellOrder>(*scene_, by_faces_.value_or(driver_.software || !scene_->delaunay));
-  std::vector<Index> order;
-  CellOrderStats order_stats;
-  const std::vector<Index> unseen =
-      order_->by_faces() ? cells_beside(mesh_->cells(), scene_->tetrahedra.size()) : std::vector<Index>();
-  order_->sort(camera, mesh_->cells(), unseen, order, order_stats);
-  parts_ = mesh_->parts(order);
-  last_.order_ms = ms_since(sorting);
-  last_.cells = order.size();
-  slabs_kept_ = false;
-  view_ = View{camera, grid, parameters.volume.color_map};
+  if (!cells_) {
+    const bool by_faces = by_faces_.value_or(driver_.software || !scene_->delaunay);
+    cells_ = std::make_unique<ProcessorCells>(*scene_, by_faces, driver_.software);
+  }
+  cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
+  last_.project_ms = ms_since(start);
+  return true;
 }
 
-void Volume::fill(Slab& slab, std::span<const Index> parts) {
-  const std::size_t shares = (parts.size() + cells_per_share - 1) / cells_per_share;
-  slab.vertices.reserve(slab_bytes, GL_STREAM_DRAW);
-  slab.first.resize(shares);
-  slab.count.resize(shares);
-  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
-  auto* vertices = static_cast<FaceVertex*>(glMapBufferRange(
-      GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(parts.size() * vertices_per_cell * sizeof(FaceVertex)),
-      GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
-  if (vertices == nullptr) {
-    check_errors("mapping vertices");
-    throw UnavailableError("OpenGL: memory for vertices cannot be mapped (" + driver_.renderer + ")");
-  }
-  parallel_for(parts.size(), cells_per_share, [&](std::size_t begin, std::size_t end) {
-    const std::size_t first = begin * vertices_per_cell;
-    std::size_t triangles = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      triangles += front_faces(mesh_->corners(parts[i]), mesh_->view().grid, vertices + first + 3 * triangles);
-    }
-    slab.first[begin / cells_per_share] = static_cast<GLint>(first);
-    slab.count[begin / cells_per_share] = static_cast<GLsizei>(3 * triangles);
-  });
-  glUnmapBuffer(GL_ARRAY_BUFFER);
+void Volume::order(const Begun& begun) {
+  if (view_) return;  // the one before
+  const Clock::time_point start = Clock::now();
+  cells_->order(begun.camera);
+  last_.order_ms = ms_since(start);
+  view_ = View{begun.camera, begun.grid, begun.parameters.volume.color_map};
 }
 
 void Volume::resize(int columns, int rows) {
@@ -228,7 +207,7 @@ void Volume::resize(int columns, int rows) {
 }
 
 void Volume::use(const Programs& programs) const {
-  const ScreenView& view = mesh_->view();
+  const ScreenView& view = cells_->view();
   const Program& program = view.perspective ? programs.perspective : programs.parallel;
   program.use();
   const double depth_scale = 2.0 / (static_cast<double>(view.last_w) - static_cast<double>(view.first_w));
@@ -247,74 +226,7 @@ void Volume::use(const Programs& programs) const {
   glBindVertexArray(vertex_array_.name());
 }
 
-void Volume::draw_slab(const Slab& slab) const {
-  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
-  glEnableVertexAttribArray(0);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
-  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
-                        reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
-  if (!driver_.software) {
-    glMultiDrawArrays(GL_TRIANGLES, slab.first.data(), slab.count.data(), static_cast<GLsizei>(slab.first.size()));
-    return;
-  }
-  // Software sorts triangles into tiles before it fills them: in small portions they are still in the caches then, and
-  // its threads have something to do sooner (a tenth of the time, llvmpipe).
-  for (std::size_t i = 0; i < slab.first.size(); ++i) {
-    glDrawArrays(GL_TRIANGLES, slab.first[i], slab.count[i]);
-    glFlush();
-  }
-}
-
-// What a repair asks for: of the parts those alone that lie where pixels are marked.
-void Volume::draw_marked(const Progress& progress) {
-  const MarkedTiles& tiles = repair_->tiles();
-  const PixelGrid& grid = mesh_->view().grid;
-  std::vector<std::vector<Index>> found((parts_.size() + cells_per_slab - 1) / cells_per_slab);
-  parallel_for(parts_.size(), cells_per_slab, [&](std::size_t begin, std::size_t end) {
-    progress.check();
-    std::vector<Index>& near = found[begin / cells_per_slab];
-    for (std::size_t i = begin; i < end; ++i) {
-      const GridBox box = pixels_between(mesh_->corners(parts_[i]), grid);
-      if (tiles.meets(box.left, box.right, box.top, box.bottom)) near.push_back(parts_[i]);
-    }
-  });
-  std::vector<Index> near;
-  for (std::size_t n = 0; n < found.size(); ++n) {
-    near.insert(near.end(), found[n].begin(), found[n].end());
-    // A slab that is full, and the last one.
-    std::size_t drawn = 0;
-    while (near.size() - drawn >= cells_per_slab || (n + 1 == found.size() && near.size() > drawn)) {
-      progress.check();
-      const std::size_t count = std::min(cells_per_slab, near.size() - drawn);
-      fill(marked_, std::span(near).subspan(drawn, count));
-      draw_slab(marked_);
-      drawn += count;
-    }
-    near.erase(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(drawn));
-  }
-}
-
-template <class After>
-void Volume::draw_slabs(After&& after) {
-  const std::size_t count = (parts_.size() + cells_per_slab - 1) / cells_per_slab;
-  const bool keep = count * slab_bytes <= kept_bytes;
-  slabs_.resize(keep ? count : 1);
-  for (std::size_t n = 0; n < count; ++n) {
-    Slab& slab = slabs_[keep ? n : 0];
-    if (!slabs_kept_) {
-      const std::size_t begin = n * cells_per_slab;
-      const Clock::time_point start = Clock::now();
-      fill(slab, std::span(parts_).subspan(begin, std::min(cells_per_slab, parts_.size() - begin)));
-      last_.faces_ms += ms_since(start);
-    }
-    draw_slab(slab);
-    after(slab, static_cast<double>(n + 1) / static_cast<double>(count));
-  }
-  slabs_kept_ = keep;
-}
-
-void Volume::clear_picture() const {
+void Volume::bind_picture() const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glEnable(GL_SCISSOR_TEST);
   glScissor(0, 0, columns_, rows_);
@@ -322,9 +234,6 @@ void Volume::clear_picture() const {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
   glStencilMask(0xFF);
-  const std::array<GLfloat, 4> nothing{};
-  glClearBufferfv(GL_COLOR, 0, nothing.data());
-  glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0F, 0);
 }
 
 // Front to back: what comes lies behind what there is. The fixed functions find the pixels whose cells come in another
@@ -344,45 +253,120 @@ void Volume::set_blending(bool check_order) {
   glStencilOp(GL_KEEP, GL_REPLACE, GL_KEEP);
 }
 
+void Volume::clear(const Begun& begun) {
+  choose_programs(make_table(begun.parameters), !begun.ray_ends.empty());
+  end_rays(begun.ray_ends);
+  if (begun.parameters.havs.order != HavsOrder::none) make_repair(begun.parameters.havs);
+  bind_picture();
+  const std::array<GLfloat, 4> nothing{};
+  glClearBufferfv(GL_COLOR, 0, nothing.data());
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0F, 0);
+}
+
+// Of the slab that is next.
+void Volume::draw_portion(Begun& begun, const Pace& pace, Progress& progress) {
+  const std::size_t places = cells_->places();
+  const Clock::time_point start = Clock::now();
+  if (cells_->make_slab(begun.drawn)) last_.faces_ms += ms_since(start);
+  const Clock::time_point drawing = Clock::now();
+  const std::size_t count =
+      std::min(cells_->slab_end(begun.drawn, places) - begun.drawn, pace.portion(begun.places_per_ms));
+  bind_picture();
+  set_blending(begun.parameters.havs.order != HavsOrder::none);
+  use(blend_);
+  cells_->draw(begun.drawn, count);
+  begun.drawn += count;
+  if (pace.limited()) {
+    glFinish();
+    begun.places_per_ms = static_cast<double>(count) / std::max(ms_since(drawing), 1e-3);
+  }
+  progress.update(static_cast<double>(begun.drawn) / static_cast<double>(places));
+}
+
+void Volume::repair(const Progress& progress) {
+  const auto gather = [&] {
+    use(gather_);
+    cells_->draw_marked(repair_->tiles(), progress);
+  };
+  glFinish();  // what has been drawn is not the repair's time; it has to look at it anyway
+  bind_picture();
+  repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
+}
+
+void Volume::step(Begun& begun, const Pace& pace, Progress& progress) {
+  using Step = Begun::Step;
+  switch (begun.step) {
+    case Step::project:
+      begun.step = project(begun, progress) ? Step::order : Step::done;
+      break;
+    case Step::order:
+      order(begun);
+      begun.step = Step::clear;
+      break;
+    case Step::clear:
+      clear(begun);
+      begun.step = Step::draw;
+      break;
+    case Step::draw:
+      if (begun.drawn < cells_->places()) draw_portion(begun, pace, progress);
+      if (begun.drawn == cells_->places()) begun.step = Step::repair;
+      break;
+    case Step::repair:
+      if (begun.parameters.havs.order != HavsOrder::none) repair(progress);
+      begun.step = Step::done;
+      break;
+    case Step::done:
+      break;
+  }
+}
+
+void Volume::begin(const Camera& camera, const Parameters& parameters, const PixelWindow& window,
+                   const PixelLattice& lattice, std::span<const float> ray_ends) {
+  begun_.emplace();
+  begun_->camera = camera;
+  begun_->parameters = parameters;
+  begun_->grid = pixel_grid(camera, window, lattice);
+  begun_->ray_ends.assign(ray_ends.begin(), ray_ends.end());
+}
+
+bool Volume::proceed(double milliseconds, RenderStats& stats, Progress& progress) {
+  using Step = Begun::Step;
+  if (!begun_) return true;
+  const Pace pace(milliseconds);
+  const StateGuard guard;
+  // Dropped where something is thrown.
+  Begun begun = std::move(*begun_);
+  begun_.reset();
+  for (bool end = false; !end;) {
+    const Clock::time_point start = Clock::now();
+    const bool drawing = begun.step >= Step::draw;
+    step(begun, pace, progress);
+    end = begun.step == Step::done || pace.over();
+    if (end) {
+      glFinish();
+      check_errors("drawing the volume");
+    }
+    begun.drawing_ms += drawing ? ms_since(start) : 0.0;
+    (drawing ? stats.render_ms : stats.setup_ms) += ms_since(start);
+  }
+  if (begun.step != Step::done) {
+    begun_ = std::move(begun);
+    return false;
+  }
+  if (view_) {
+    last_.cells = cells_->cells();
+    last_.triangles = cells_->triangles();
+  }
+  last_.draw_ms = begun.drawing_ms - last_.faces_ms - last_.repair.ms;
+  progress.update(1.0);
+  return true;
+}
+
 void Volume::draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window,
                   const PixelLattice& lattice, RenderStats& stats, Progress& progress,
                   std::span<const float> ray_ends) {
-  const Clock::time_point start = Clock::now();
-  const StateGuard guard;
-  const PixelGrid grid = pixel_grid(camera, window, lattice);
-  resize(grid.columns, grid.rows);
-  if (grid.columns == 0 || grid.rows == 0) return;
-  last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
-  if (!same_view(camera, grid, parameters)) find_cells(camera, grid, parameters, progress);
-  choose_programs(make_table(parameters), !ray_ends.empty());
-  end_rays(ray_ends);
-  const bool check_order = parameters.havs.order != HavsOrder::none;
-  if (check_order) make_repair(parameters.havs);
-  stats.setup_ms += ms_since(start);
-
-  const Clock::time_point drawing = Clock::now();
-  clear_picture();
-  set_blending(check_order);
-  use(blend_);
-  last_.triangles = 0;
-  last_.repair = {};
-  draw_slabs([&](const Slab& slab, double fraction) {
-    for (const GLsizei count : slab.count) last_.triangles += static_cast<std::size_t>(count) / 3;
-    progress.update(fraction);
-  });
-  if (check_order) {
-    const auto gather = [&] {
-      use(gather_);
-      draw_marked(progress);
-    };
-    glFinish();  // what has been drawn is not the repair's time; it has to look at it anyway
-    repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
-  }
-  glFinish();
-  check_errors("drawing the volume");
-  progress.update(1.0);
-  last_.draw_ms = ms_since(drawing) - last_.faces_ms - last_.repair.ms;
-  stats.render_ms += ms_since(drawing);
+  begin(camera, parameters, window, lattice, ray_ends);
+  proceed(std::numeric_limits<double>::infinity(), stats, progress);
 }
 
 Image Volume::read() const {

@@ -10,12 +10,11 @@
 #include "core/image.h"
 #include "core/parameters.h"
 #include "core/progress.h"
-#include "render/gl/cell_order.h"
 #include "render/gl/context.h"
 #include "render/gl/objects.h"
 #include "render/gl/order_repair.h"
 #include "render/gl/preintegration_table.h"
-#include "render/gl/screen_mesh.h"
+#include "render/gl/prepared_cells.h"
 #include "render/pixel_lattice.h"
 #include "render/renderer.h"
 #include "render/scene.h"
@@ -55,6 +54,17 @@ class Volume {
   void draw(const Camera& camera, const Parameters& parameters, const PixelWindow& window, const PixelLattice& lattice,
             RenderStats& stats, Progress& progress, std::span<const float> ray_ends = {});
 
+  // The same a little at a time, with the same bits: begin(), and proceed() until it returns true. Between the calls
+  // OpenGL may be used for anything else. What was begun and not finished is dropped by the next begin(), draw() or
+  // set_scene(), and by what is thrown. begin() keeps copies of what it is given, and leaves OpenGL and texture()
+  // alone.
+  void begin(const Camera& camera, const Parameters& parameters, const PixelWindow& window, const PixelLattice& lattice,
+             std::span<const float> ray_ends = {});
+  // Goes on for about so many milliseconds, at least by one step, and waits for OpenGL; whether the picture is finished
+  // (also where none is begun). Cells are drawn in portions that fit the time; projecting them, putting them in order
+  // and repairing are steps that are not divided. Until then texture() has the cells in front, or what it had before.
+  bool proceed(double milliseconds, RenderStats& stats, Progress& progress);
+
   int largest_side() const { return largest_side_; }
   const VolumeStats& last() const { return last_; }
   const PreintegrationTable::Stats& table() const { return table_.stats(); }
@@ -72,12 +82,19 @@ class Volume {
     PixelGrid grid;
     ColorMap color_map;  // transparent cells are left out
   };
-  // Front faces of consecutive cells of the order, on the card.
-  struct Slab {
-    Buffer vertices;
-    std::vector<GLint> first;
-    std::vector<GLsizei> count;
+  // A picture that is begun.
+  struct Begun {
+    Camera camera;
+    Parameters parameters;
+    PixelGrid grid;
+    std::vector<float> ray_ends;
+    // what comes next
+    enum class Step { project, order, clear, draw, repair, done } step = Step::project;
+    std::size_t drawn = 0;       // places of the order
+    double places_per_ms = 0.0;  // of the last portion; 0: none yet
+    double drawing_ms = 0.0;
   };
+  struct Pace;
 
   // The same for both projections.
   struct Programs {
@@ -86,23 +103,23 @@ class Volume {
   };
 
   bool same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const;
-  void find_cells(const Camera& camera, const PixelGrid& grid, const Parameters& parameters, const Progress& progress);
+  void step(Begun& begun, const Pace& pace, Progress& progress);
+  // Whether there is anything to draw.
+  bool project(const Begun& begun, const Progress& progress);
+  void order(const Begun& begun);
+  void clear(const Begun& begun);
+  void draw_portion(Begun& begun, const Pace& pace, Progress& progress);
+  void repair(const Progress& progress);
   Programs make_programs(std::string_view fragment_file, std::vector<std::string> defines) const;
   // Whether the table is to be used, which is then ready.
   bool make_table(const Parameters& parameters);
   void choose_programs(bool table, bool rays_end);
   void make_repair(const HavsParameters& parameters);
   void end_rays(std::span<const float> ray_ends);
-  void fill(Slab& slab, std::span<const Index> parts);
   void resize(int columns, int rows);
-  void clear_picture() const;
+  void bind_picture() const;
   static void set_blending(bool check_order);
   void use(const Programs& programs) const;
-  void draw_slab(const Slab& slab) const;
-  // Calls after(n of all) after each slab.
-  template <class After>
-  void draw_slabs(After&& after);
-  void draw_marked(const Progress& progress);
 
   Driver driver_;
   int largest_side_ = 0;
@@ -110,13 +127,8 @@ class Volume {
   const Scene* scene_ = nullptr;
   std::optional<bool> by_faces_;
   std::optional<View> view_;
-  std::unique_ptr<CellOrder> order_;
-  std::unique_ptr<ScreenMesh> mesh_;
+  std::unique_ptr<PreparedCells> cells_;  // of the scene
   PreintegrationTable table_;
-  std::vector<Index> parts_;  // in order
-  std::vector<Slab> slabs_;
-  bool slabs_kept_ = false;       // slabs_ hold all parts
-  Slab marked_;                   // of a repair
   double longest_segment_ = 0.0;  // Å; of the scene, 0 while unknown
   Texture ray_ends_;
   // The programs look segments up in the table; ask for where rays end.
@@ -132,6 +144,7 @@ class Volume {
   int columns_ = 0;
   int rows_ = 0;
   VolumeStats last_;
+  std::optional<Begun> begun_;
 };
 
 }  // namespace atomesh::gl

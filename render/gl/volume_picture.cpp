@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -84,41 +85,68 @@ void VolumePicture::set_scene(std::shared_ptr<const Scene> scene) {
                      (scene->solids != nullptr ? " with something in it" : "") + " is not drawn here");
   }
   if (scene == scene_) return;
+  begun_.reset();
   pipeline_->volume().set_scene(*scene);
   scene_ = std::move(scene);
 }
 
-void VolumePicture::draw(const Camera& camera, const Parameters& parameters, const PictureDetail& detail,
-                         Progress& progress) {
+void VolumePicture::begin(const Camera& camera, const Parameters& parameters, const PictureDetail& detail) {
   check_picture(camera, parameters);
+  last_ = {};
+  begun_ = Begun{.camera = camera, .parameters = parameters, .detail = detail};
+}
+
+bool VolumePicture::proceed(double milliseconds, Progress& progress) {
+  if (!begun_) return true;
+  const auto start = std::chrono::steady_clock::now();
   forget_errors();
   const StateGuard guard;
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-  const int n = detail.stride == 1 ? parameters.supersampling : 1;
-  const Camera rays = ray_camera(camera, n);
-  const PixelLattice lattice{detail.stride, detail.stride};
+  // Dropped where something is thrown.
+  Begun begun = std::move(*begun_);
+  begun_.reset();
+  const Camera& camera = begun.camera;
+  const int stride = begun.detail.stride;
+  const int n = stride == 1 ? begun.parameters.supersampling : 1;
   // Of whole pixels, and such that a part's rays begin with a pixel that the lattice has.
-  const int side = std::max(1, pipeline_->part_side() / n) * detail.stride;
+  const int side = std::max(1, pipeline_->part_side() / n) * stride;
   Volume& volume = pipeline_->volume();
-  last_ = {};
-  RenderStats stats;
-  for (int top = 0; top < camera.height; top += side) {
-    for (int left = 0; left < camera.width; left += side) {
-      const PixelWindow part{left, top, std::min(side, camera.width - left), std::min(side, camera.height - top)};
-      volume.draw(rays, parameters, ray_window(part, n), lattice, stats, progress);
-      const VolumeStats& times = volume.last();
-      last_.cells += times.project_ms + times.order_ms + times.faces_ms;
-      last_.pixels += times.draw_ms + times.repair.ms;
-      const auto start = std::chrono::steady_clock::now();
-      pipeline_->lay_over_background(camera, part, parameters.background, n, detail.stride,
-                                     static_cast<GLuint>(target));
-      glFinish();
-      last_.pixels += ms_since(start);
+  while (begun.top < camera.height) {
+    const PixelWindow part{begun.left, begun.top, std::min(side, camera.width - begun.left),
+                           std::min(side, camera.height - begun.top)};
+    if (!begun.in_part) volume.begin(ray_camera(camera, n), begun.parameters, ray_window(part, n), {stride, stride});
+    begun.in_part = true;
+    RenderStats stats;
+    const double rest = std::max(milliseconds - ms_since(start), 0.0);
+    if (!volume.proceed(rest, stats, progress)) {
+      require_living_context();
+      begun_ = std::move(begun);
+      return false;
+    }
+    const VolumeStats& times = volume.last();
+    last_.cells += times.project_ms + times.order_ms + times.faces_ms;
+    last_.pixels += times.draw_ms + times.repair.ms;
+    const auto finishing = std::chrono::steady_clock::now();
+    pipeline_->lay_over_background(camera, part, begun.parameters.background, n, stride, static_cast<GLuint>(target));
+    glFinish();
+    last_.pixels += ms_since(finishing);
+    begun.in_part = false;
+    begun.left += side;
+    if (begun.left >= camera.width) {
+      begun.left = 0;
+      begun.top += side;
     }
   }
   require_living_context();
   check_errors("finishing the picture");
+  return true;
+}
+
+void VolumePicture::draw(const Camera& camera, const Parameters& parameters, const PictureDetail& detail,
+                         Progress& progress) {
+  begin(camera, parameters, detail);
+  proceed(std::numeric_limits<double>::infinity(), progress);
 }
 
 }  // namespace atomesh::gl

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/camera.h"
 #include "core/parameters.h"
@@ -44,7 +45,17 @@ class VolumePicture {
   void draw(const Camera& camera, const Parameters& parameters, const PictureDetail& detail = {},
             Progress& progress = no_progress());
 
-  // Milliseconds of the last draw().
+  // The same a little at a time, with the same bits: begin(), and proceed() until it returns true. Between the calls
+  // OpenGL may be used for anything else. What was begun and not finished is dropped by the next begin(), draw() or
+  // set_scene(), and by what is thrown. begin() throws UsageError where the picture cannot be, and leaves OpenGL alone.
+  void begin(const Camera& camera, const Parameters& parameters, const PictureDetail& detail = {});
+  // Goes on for about so many milliseconds, at least by one step, and waits for OpenGL; whether the picture is finished
+  // (also where none is begun). Only then, or part by part where it has several, is it put into the framebuffer that is
+  // bound, which has to be the same in all calls. Projecting cells, putting them in order and repairing are steps that
+  // are not divided, so that the first calls may take longer: 0.2 s for a million cells, once a view.
+  bool proceed(double milliseconds, Progress& progress = no_progress());
+
+  // Milliseconds of the picture that was begun last.
   struct Times {
     double cells = 0.0;   // projecting, sorting and sending them; 0 where the view was the one before
     double pixels = 0.0;  // OpenGL's
@@ -54,7 +65,18 @@ class VolumePicture {
  private:
   class Pipeline;  // OpenGL's own, whose header does not go with that of windows
   std::unique_ptr<Pipeline> pipeline_;
+  // What is begun: the parts from `top` and `left` on are not finished.
+  struct Begun {
+    Camera camera;
+    Parameters parameters;
+    PictureDetail detail;
+    int left = 0;
+    int top = 0;
+    bool in_part = false;  // the first of them is begun
+  };
+
   std::shared_ptr<const Scene> scene_;
+  std::optional<Begun> begun_;
   Times last_;
 };
 

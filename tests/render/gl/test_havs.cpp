@@ -204,6 +204,61 @@ TEST_F(DebugVolume, ViewsThatStayAreDrawnWithoutSorting) {
   EXPECT_LE(compare_images(small, judged.image).max, 4.0 / 255.0);
 }
 
+// However little at a time: the same bits.
+TEST_F(DebugVolume, SlicesOfTimeMakeTheSamePicture) {
+  Subject subject = subject_of(Projection::perspective, 90, 70);
+  volume.set_scene(subject.scene);
+  const PixelWindow window = whole_picture(subject.camera);
+  RenderStats stats;
+  EXPECT_TRUE(volume.proceed(1.0, stats, no_progress()));  // nothing is begun
+  draw(subject);
+  const Image whole = volume.read();
+  const std::size_t triangles = volume.last().triangles;
+  const auto in_slices = [&](double milliseconds) {
+    volume.begin(subject.camera, subject.parameters, window, {});
+    int calls = 1;
+    for (; !volume.proceed(milliseconds, stats, no_progress()); ++calls) {
+      // What somebody else does meanwhile, and finds as it was.
+      glUseProgram(0);
+      glViewport(0, 0, 1, calls % 7 + 1);
+      glDisable(GL_BLEND);
+      glBindTexture(GL_TEXTURE_2D, 0);
+    }
+    EXPECT_EQ(glIsEnabled(GL_BLEND), GL_FALSE);
+    std::array<GLint, 4> viewport{};
+    glGetIntegerv(GL_VIEWPORT, viewport.data());
+    EXPECT_TRUE(calls == 1 || viewport[3] == (calls - 1) % 7 + 1);
+    return calls;
+  };
+  volume.set_scene(subject.scene);
+  EXPECT_GT(in_slices(0.0), 10);
+  EXPECT_EQ(volume.read().pixels, whole.pixels);
+  EXPECT_EQ(volume.last().triangles, triangles);
+  // Of the same view again, which is not prepared again.
+  EXPECT_GT(in_slices(0.1), 1);
+  EXPECT_EQ(volume.last().faces_ms, 0.0);
+  EXPECT_EQ(volume.read().pixels, whole.pixels);
+  EXPECT_EQ(in_slices(1e9), 1);
+  EXPECT_EQ(volume.read().pixels, whole.pixels);
+
+  // One that is dropped at any step changes none that comes after it.
+  const Camera camera = subject.camera;
+  for (int calls = 1; calls < 8; ++calls) {
+    subject.camera = make_camera(subject.parameters, subject.scene.bounds, 60, 80);
+    volume.begin(subject.camera, subject.parameters, whole_picture(subject.camera), {});
+    for (int i = 0; i < calls; ++i) volume.proceed(0.0, stats, no_progress());
+    subject.camera = camera;
+    draw(subject);
+    EXPECT_EQ(volume.read().pixels, whole.pixels) << calls;
+    // A cancelled one, too.
+    volume.begin(subject.camera, subject.parameters, window, {});
+    Progress cancelled;
+    cancelled.request_cancel();
+    EXPECT_THROW(volume.proceed(1e9, stats, cancelled), CancelledError);
+    EXPECT_TRUE(volume.proceed(1e9, stats, no_progress()));
+  }
+}
+
 TEST_F(DebugVolume, LeavesOpenGlAsItWas) {
   const Subject subject = subject_of(Projection::perspective, 30, 30);
   glViewport(3, 4, 5, 6);

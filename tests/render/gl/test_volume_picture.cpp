@@ -48,12 +48,17 @@ class FinishedVolume : public testing::TestWithParam<Projection> {
  protected:
   // What is drawn into a framebuffer of floats that is a bit larger.
   Image drawn(VolumePicture& picture, const Subject& subject, const PictureDetail& detail = {}) {
+    return framed(subject, [&] { picture.draw(subject.camera, subject.parameters, detail); });
+  }
+  // What `draw` draws.
+  template <class Draw>
+  Image framed(const Subject& subject, Draw&& draw) {
     const Camera& camera = subject.camera;
     const gl::Texture target = gl::Texture::make_2d(GL_RGBA32F, camera.width + 3, camera.height + 2);
     const gl::Framebuffer framebuffer = gl::make_framebuffer();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), 0);
-    picture.draw(camera, subject.parameters, detail);
+    draw();
     GLint bound = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
     EXPECT_EQ(static_cast<GLuint>(bound), framebuffer.name());
@@ -100,6 +105,34 @@ TEST_P(FinishedVolume, IsTheSameInParts) {
     parts.set_scene(whole.scene());
     EXPECT_LE(compare_images(drawn(parts, subject), drawn(whole, subject)).max, 1e-5) << n;
   }
+}
+
+TEST_P(FinishedVolume, IsTheSameInSlicesOfTime) {
+  Subject subject = subject_of(GetParam(), 95, 70);
+  subject.parameters.supersampling = 2;
+  for (const int part_side : {4096, 100}) {
+    VolumePicture whole(part_side);
+    whole.set_scene(scene_of(subject));
+    VolumePicture slices(part_side);
+    slices.set_scene(whole.scene());
+    for (const PictureDetail& detail : {PictureDetail{}, PictureDetail{.stride = 2}}) {
+      const Image expected = drawn(whole, subject, detail);
+      for (const double milliseconds : {0.0, 2.0}) {
+        int calls = 1;
+        const Image image = framed(subject, [&] {
+          slices.begin(subject.camera, subject.parameters, detail);
+          for (; !slices.proceed(milliseconds); ++calls) glViewport(0, 0, 1, 1);
+        });
+        EXPECT_EQ(image.pixels, expected.pixels) << part_side << ' ' << detail.stride << ' ' << milliseconds;
+        EXPECT_GT(calls, milliseconds == 0.0 ? 5 : 0);
+        EXPECT_GT(slices.last().pixels, 0.0);
+      }
+    }
+  }
+  VolumePicture picture;
+  EXPECT_TRUE(picture.proceed(1.0));
+  subject.camera.width = 0;
+  EXPECT_THROW(picture.begin(subject.camera, subject.parameters), UsageError);
 }
 
 TEST_P(FinishedVolume, OfFewRaysIsNearTheWhole) {
