@@ -7,6 +7,7 @@
 #include <chrono>
 #include <exception>
 #include <new>
+#include <utility>
 
 #include "core/stopwatch.h"
 #include "render/gl/coarse_volume.h"
@@ -120,10 +121,13 @@ void CardView::draw_volume() {
 
 void CardView::draw_coarse_volume() {
   if (!coarse_) {
-    const auto all = static_cast<double>(scene_->scene->tetrahedra.size());
+    const std::shared_ptr<const Scene>& whole = scene_->scene;
+    const auto all = static_cast<double>(whole->tetrahedra.size());
+    Scene coarse = gl::coarse_volume(*whole, static_cast<std::size_t>(detail_.cells * all));
+    // They borrow of the material, as the whole scene does, which therefore stays with them.
+    if (whole->solids) coarse.solids = std::shared_ptr<const Scene>(whole, whole->solids.get());
     coarse_ = std::make_unique<gl::VolumePicture>();
-    coarse_->set_scene(std::make_shared<const Scene>(
-        gl::coarse_volume(*scene_->scene, static_cast<std::size_t>(detail_.cells * all))));
+    coarse_->set_scene(std::make_shared<const Scene>(std::move(coarse)));
   }
   // Its cells overlap here and there: there is no right order to restore.
   Parameters parameters = parameters_;

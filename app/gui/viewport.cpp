@@ -76,9 +76,6 @@ std::optional<QString> Viewport::why_not_by_gpu() const {
   if (drawing == ViewOptions::Drawing::automatic && gpu.software) {
     return tr("OpenGL runs in software, which takes longer: %1").arg(QString::fromStdString(gpu.renderer));
   }
-  if (mode == Mode::volume && workspace_.shown().volume.solid != VolumeSolid::none) {
-    return tr("there is something in the volume");
-  }
   return std::nullopt;
 }
 

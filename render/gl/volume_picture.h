@@ -34,7 +34,9 @@ class VolumePicture {
   VolumePicture(const VolumePicture&) = delete;
   VolumePicture& operator=(const VolumePicture&) = delete;
 
-  // What is drawn from now on: a scene of mode volume without solids (UsageError for another).
+  // What is drawn from now on: a scene of mode volume (UsageError for another). Its solids are drawn by the CPU
+  // renderer, at the picture's own rays; those of a view that is drawn again are kept, as far as they take no more than
+  // 512 MB.
   void set_scene(std::shared_ptr<const Scene> scene);
   const std::shared_ptr<const Scene>& scene() const { return scene_; }
 
@@ -52,13 +54,15 @@ class VolumePicture {
   // Goes on for about so many milliseconds, at least by one step, and waits for OpenGL; whether the picture is finished
   // (also where none is begun). Only then, or part by part where it has several, is it put into the framebuffer that is
   // bound, which has to be the same in all calls. Projecting cells, putting them in order and repairing are steps that
-  // are not divided, so that the first calls may take longer: 0.2 s for a million cells, once a view.
+  // are not divided, so that the first calls may take longer: 0.2 s for a million cells, once a view. Solids are drawn
+  // beside, by a thread of their own.
   bool proceed(double milliseconds, Progress& progress = no_progress());
 
   // Milliseconds of the picture that was begun last.
   struct Times {
     double cells = 0.0;   // projecting, sorting and sending them; 0 where the view was the one before
-    double pixels = 0.0;  // OpenGL's
+    double solids = 0.0;  // projecting and sorting what stands in the volume; 0 where it was kept
+    double pixels = 0.0;  // OpenGL's, and the rays of what stands in the volume
   };
   const Times& last() const { return last_; }
 
@@ -72,8 +76,12 @@ class VolumePicture {
     PictureDetail detail;
     int left = 0;
     int top = 0;
-    bool in_part = false;  // the first of them is begun
+    std::size_t number = 0;  // of the first of them
+    bool in_part = false;    // the first of them is begun
   };
+  struct Layout;
+  bool begin_part(const Begun& begun, const Layout& layout, double milliseconds, Progress& progress);
+  void finish_part(const Begun& begun, const Layout& layout, unsigned target);
 
   std::shared_ptr<const Scene> scene_;
   std::optional<Begun> begun_;

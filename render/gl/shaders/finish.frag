@@ -1,6 +1,8 @@
 // From rays to pixels: the mean of n × n of them, or between rays that stand `stride` pixels apart the mean by
-// distance; and the background under it. Colours are premultiplied.
-uniform sampler2D rays;  // the upper row first
+// distance; behind each ray what stands in the volume, and the background under it all. Colours are premultiplied.
+uniform sampler2D rays;    // the upper row first
+uniform sampler2D solids;  // what each ray ends at
+uniform bool with_solids;
 uniform ivec2 size;      // of what is drawn of it
 uniform ivec2 corner;    // the first of the target's pixels that is drawn, as OpenGL counts
 uniform int rows;        // of the target that are drawn
@@ -11,7 +13,9 @@ uniform vec4 background;
 out vec4 color;
 
 vec4 ray(ivec2 at) {
-  return texelFetch(rays, clamp(at, ivec2(0), size - 1), 0);
+  at = clamp(at, ivec2(0), size - 1);
+  vec4 front = texelFetch(rays, at, 0);
+  return with_solids ? front + (1.0 - front.a) * texelFetch(solids, at, 0) : front;
 }
 
 void main() {

@@ -47,6 +47,26 @@ TEST(MovingDetail, IsFewerCellsWhereTheyTakeLong) {
   EXPECT_EQ(detail.next(), (Detail{.stride = 2, .cells = 0.1}));
 }
 
+TEST(MovingDetail, LeavesTimeForWhatStandsInTheVolume) {
+  MovingDetail detail;
+  detail.drew_whole({.cells = 10.0, .solids = 30.0, .pixels = 10.0}, 1);
+  // Half of the budget is left for the others, 16.5 ms, of which the cells have 8.25.
+  EXPECT_EQ(detail.next(), (Detail{.stride = 2, .cells = 0.825}));
+  detail.drew_whole({.cells = 10.0, .solids = 300.0, .pixels = 10.0}, 1);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 2, .cells = 0.825}));
+  // Solids that are kept are the same.
+  detail.drew_whole({.cells = 0.0, .solids = 0.0, .pixels = 10.0}, 1);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 2, .cells = 0.825}));
+  detail.drew_whole({.cells = 10.0, .solids = 13.0, .pixels = 9.0}, 1);
+  EXPECT_EQ(detail.next(), Detail());
+  detail.drew_whole({.cells = 2.0, .solids = 20.0, .pixels = 15.0}, 1);
+  EXPECT_EQ(detail.next().stride, 2);
+  detail.drew_moving({.cells = 2.0, .solids = 20.0, .pixels = 4.0}, detail.next());
+  EXPECT_EQ(detail.next().stride, 2);
+  detail.drew_moving({.cells = 2.0, .solids = 20.0, .pixels = 20.0}, detail.next());
+  EXPECT_EQ(detail.next().stride, 4);
+}
+
 TEST(MovingDetail, FollowsWhatPicturesOnTheWayTake) {
   MovingDetail detail;
   const auto moved = [&](double cells, double pixels) {

@@ -201,16 +201,35 @@ TEST_F(WindowVolume, IsPickedAsThatOfTheProcessor) {
   EXPECT_EQ(picks[0].position, picks[1].position);
 }
 
-TEST_F(WindowVolume, WithSomethingInItIsTheProcessors) {
+TEST_F(WindowVolume, HasInItWhatTheRenderersHave) {
   draw_with(ViewOptions::Drawing::gpu);
   choose(Mode::volume);
-  workspace().set("volume.solid", "walls");
   ASSERT_TRUE(settled());
-  EXPECT_FALSE(window->viewport().drawn_by_gpu());
-  EXPECT_TRUE(log.contains("The processor draws the volume")) << log.toStdString();
+  watch_card();
+  const Image nothing_in_it = screen();
+  for (const char* solid : {"walls", "atoms", "defects"}) {
+    workspace().set("volume.solid", solid);
+    for (const char* projection : {"perspective", "parallel"}) {
+      workspace().set("view.projection", projection);
+      ASSERT_TRUE(settled());
+      ASSERT_TRUE(window->viewport().drawn_by_gpu()) << log.toStdString();
+      const Image image = screen();
+      test::keep_screenshot(window->viewport().screenshot(), std::string("volume-with-") + solid + '-' + projection);
+      EXPECT_LE(compare_images(image, rendered("havs")).max, 0.51 / 255.0) << solid << projection;
+      EXPECT_LE(compare_images(image, rendered("cpu")).max, 4.0 / 255.0) << solid << projection;
+      EXPECT_GT(compare_images(image, nothing_in_it).rmse, 0.005) << solid << projection;
+    }
+    // With another map.
+    workspace().set("volume.alpha_length", "1");
+    ASSERT_TRUE(settled());
+    EXPECT_LE(compare_images(screen(), rendered("havs")).max, 0.51 / 255.0) << solid;
+    workspace().set("volume.alpha_length", "4");
+  }
+  EXPECT_FALSE(log.contains("The processor draws the volume")) << log.toStdString();
   workspace().set("volume.solid", "none");
+  workspace().reset("view.projection");
   ASSERT_TRUE(settled());
-  EXPECT_TRUE(window->viewport().drawn_by_gpu());
+  EXPECT_EQ(compare_images(screen(), nothing_in_it).max, 0.0);
 }
 
 TEST_F(WindowVolume, IsTheProcessorsWhereOpenGlIsSoftwareAndNobodySaysOtherwise) {

@@ -31,6 +31,17 @@ Subject subject_of(Projection projection, int width, int height) {
   return subject;
 }
 
+constexpr VolumeSolid all_solids[] = {VolumeSolid::defects, VolumeSolid::atoms, VolumeSolid::walls};
+
+// With something in it.
+Subject subject_with(VolumeSolid solid, Projection projection, int width, int height) {
+  Subject subject = subject_of(projection, width, height);
+  subject.parameters.volume.solid = solid;
+  for (auto& entry : subject.parameters.volume.color_map.entries) entry.color.a *= 0.3F;
+  subject.scene = make_scene(subject.material, subject.parameters);
+  return subject;
+}
+
 std::shared_ptr<const Scene> scene_of(const Subject& subject) {
   return std::make_shared<const Scene>(subject.scene);
 }
@@ -104,6 +115,119 @@ TEST_P(FinishedVolume, IsTheSameInParts) {
     VolumePicture parts(33);
     parts.set_scene(whole.scene());
     EXPECT_LE(compare_images(drawn(parts, subject), drawn(whole, subject)).max, 1e-5) << n;
+  }
+}
+
+TEST_P(FinishedVolume, HasInItWhatTheRenderersHave) {
+  VolumePicture picture;
+  for (const VolumeSolid solid : all_solids) {
+    for (const int n : {1, 2, 3}) {
+      Subject subject = subject_with(solid, GetParam(), 95, 70);
+      subject.parameters.supersampling = n;
+      subject.parameters.background = Vec4f(0.9F, 0.5F, 0.1F, 0.5F);
+      picture.set_scene(scene_of(subject));
+      const Image image = drawn(picture, subject);
+      EXPECT_LE(compare_images(image, rendered("havs", subject)).max, 1e-5) << n;
+      EXPECT_LE(compare_images(image, rendered("cpu", subject)).max, 4.0 / 255.0) << n;
+      VolumePicture parts(33);
+      parts.set_scene(picture.scene());
+      EXPECT_LE(compare_images(drawn(parts, subject), image).max, 1e-5) << n;
+      subject.scene.solids.reset();
+      EXPECT_GT(compare_images(image, rendered("havs", subject)).rmse, 0.02) << "there is nothing in it";
+    }
+  }
+}
+
+TEST_P(FinishedVolume, HasTheSameInItWithFewRays) {
+  for (const VolumeSolid solid : all_solids) {
+    const Subject subject = subject_with(solid, GetParam(), 95, 70);
+    VolumePicture picture(33);
+    picture.set_scene(scene_of(subject));
+    const Image whole = drawn(picture, subject);
+    for (const int stride : {2, 4, 8}) {
+      const Image coarse = drawn(picture, subject, {.stride = stride});
+      for (int row = 0; row < 70; row += stride) {
+        for (int column = 0; column < 95; column += stride) {
+          for (int k = 0; k < 4; ++k) {
+            ASSERT_NEAR(coarse.at(column, row)[k], whole.at(column, row)[k], 0.03) << column << ' ' << row;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(FinishedVolume, KeepsWhatIsInItWhileTheViewIsTheSame) {
+  for (const int part_side : {33, 4096}) {
+    Subject subject = subject_with(VolumeSolid::atoms, GetParam(), 95, 70);
+    VolumePicture picture(part_side);
+    picture.set_scene(scene_of(subject));
+    const auto expect = [&](bool kept, const char* changed) {
+      const Image image = drawn(picture, subject);
+      EXPECT_EQ(picture.last().solids == 0.0, kept) << changed;
+      VolumePicture fresh(part_side);
+      fresh.set_scene(picture.scene());
+      EXPECT_EQ(image.pixels, drawn(fresh, subject).pixels) << changed;
+    };
+    expect(false, "nothing known");
+    expect(true, "nothing");
+    subject.parameters.volume.color_map.entries[1].color.a = 0.9F;
+    subject.parameters.volume.alpha_length = 0.7;
+    subject.parameters.background = Vec4f(0.1F, 0.1F, 0.1F, 1.0F);
+    expect(true, "the colour map");
+    drawn(picture, subject, {.stride = 4});
+    EXPECT_GT(picture.last().solids, 0.0);
+    drawn(picture, subject, {.stride = 4});
+    EXPECT_EQ(picture.last().solids, 0.0);
+    expect(true, "few rays between");
+    subject.parameters.lights[0].color *= 0.5F;
+    expect(false, "a light");
+    subject.parameters.supersampling = 2;
+    expect(false, "rays");
+    subject.parameters.supersampling = 1;
+    subject.parameters.azimuth += 5.0;
+    subject.camera = make_camera(subject.parameters, subject.scene.bounds, 95, 70);
+    expect(false, "the view");
+    subject.parameters.volume.solid = VolumeSolid::walls;
+    subject.scene = make_scene(subject.material, subject.parameters);
+    picture.set_scene(scene_of(subject));
+    expect(false, "the scene");
+  }
+}
+
+TEST_P(FinishedVolume, HasTheSameInItInSlicesOfTime) {
+  for (const VolumeSolid solid : all_solids) {
+    Subject subject = subject_with(solid, GetParam(), 95, 70);
+    subject.parameters.supersampling = 2;
+    Subject turned = subject;
+    turned.parameters.azimuth += 20.0;
+    turned.camera = make_camera(turned.parameters, turned.scene.bounds, 95, 70);
+    for (const int part_side : {4096, 100}) {
+      VolumePicture whole(part_side);
+      whole.set_scene(scene_of(subject));
+      const Image expected = drawn(whole, subject);
+      VolumePicture slices(part_side);
+      slices.set_scene(whole.scene());
+      // What was begun for another view is given up at whatever point: by slices, and by what is drawn at once.
+      for (const int calls : {1, 2, 3, 1000}) {
+        const Image image = framed(subject, [&] {
+          slices.begin(turned.camera, turned.parameters);
+          for (int i = 0; i < calls; ++i) slices.proceed(0.5);
+          if (calls == 2) slices.draw(turned.camera, turned.parameters, {.stride = 4});
+          slices.begin(subject.camera, subject.parameters);
+          slices.begin(subject.camera, subject.parameters);
+          while (!slices.proceed(calls == 3 ? 0.0 : 2.0)) glViewport(0, 0, 1, 1);
+        });
+        EXPECT_EQ(image.pixels, expected.pixels) << part_side << ' ' << calls;
+        EXPECT_GT(slices.last().solids, 0.0);
+      }
+      Progress cancelled;
+      cancelled.request_cancel();
+      slices.begin(turned.camera, turned.parameters);
+      EXPECT_THROW(slices.proceed(1.0, cancelled), CancelledError);
+      slices.begin(turned.camera, turned.parameters);
+      slices.proceed(0.0);  // and goes while it is drawn
+    }
   }
 }
 
@@ -186,13 +310,11 @@ TEST_P(FinishedVolume, LeavesStateAndOthersErrorsAlone) {
   for (const GLenum on : {GL_SCISSOR_TEST, GL_BLEND, GL_DEPTH_TEST}) EXPECT_EQ(glIsEnabled(on), GL_TRUE) << on;
 }
 
-TEST_P(FinishedVolume, IsOfVolumesWithNothingInThem) {
+TEST_P(FinishedVolume, IsOfVolumesAlone) {
   VolumePicture picture;
-  Scene scene = test::shaken_box(Mode::atoms, GetParam(), 20, 20).scene;
-  EXPECT_THROW(picture.set_scene(std::make_shared<const Scene>(scene)), UsageError);
+  EXPECT_THROW(picture.set_scene(scene_of(test::shaken_box(Mode::atoms, GetParam(), 20, 20))), UsageError);
   Subject subject = subject_of(GetParam(), 20, 20);
-  subject.scene.solids = std::make_shared<const Scene>(std::move(scene));
-  EXPECT_THROW(picture.set_scene(scene_of(subject)), UsageError);
+  picture.set_scene(scene_of(subject));
   subject.camera.width = 0;
   EXPECT_THROW(picture.draw(subject.camera, subject.parameters), UsageError);
 }
