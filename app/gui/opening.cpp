@@ -170,8 +170,8 @@ void Opening::take_found(const Wanted& wanted, Found& found) {
 void Opening::take_picture(const Wanted& wanted, Found& found) {
   const PictureState& picture = *found.picture;
   if (found.shown_already) {
-    workspace_.change(*found.look.parameters, tr("View of %1").arg(QFileInfo(text(wanted.path)).fileName()));
-    show_parts(found.look);
+    workspace_.change_look(*found.look.parameters, *found.look.parts,
+                           tr("View of %1").arg(QFileInfo(text(wanted.path)).fileName()));
     pages_.setCurrentWidget(&view_);
     emit opened();
     return;
@@ -209,20 +209,11 @@ void Opening::preprocess(const PreprocessingRequest& request, const Look& look) 
 }
 
 void Opening::show(Document document, const Look& look) {
-  show_parts(look);
+  if (look.parts) workspace_.show_parts(*look.parts);
   workspace_.show_document(std::move(document), look.parameters);
   pages_.setCurrentWidget(&view_);
   view_.setFocus();
   emit opened();
-}
-
-void Opening::show_parts(const Look& look) {
-  if (!look.parts) return;
-  ViewOptions options = workspace_.view_options();
-  options.legend = look.parts->legend;
-  options.scale_bar = look.parts->scale_bar;
-  options.tripod = look.parts->tripod;
-  workspace_.set_view_options(options);
 }
 
 void Opening::fail(const QString& path, const QString& problem) {

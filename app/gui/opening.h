@@ -65,7 +65,6 @@ class Opening : public QObject {
   void take_picture(const Wanted& wanted, Found& found);
   void preprocess(const PreprocessingRequest& request, const Look& look);
   void show(Document document, const Look& look);
-  void show_parts(const Look& look);
   void fail(const QString& path, const QString& problem);
 
   Workspace& workspace_;

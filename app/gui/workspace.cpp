@@ -122,6 +122,15 @@ void Workspace::change(const Parameters& to, const QString& name, const std::str
   if (history_.change(to, name.toStdString(), gesture)) follow_parameters();
 }
 
+void Workspace::change_look(const Parameters& to, const cli::PictureParts& parts, const QString& name) {
+  check_parameters(to);
+  const cli::PictureParts before{
+      .legend = view_options_.legend, .scale_bar = view_options_.scale_bar, .tripod = view_options_.tripod};
+  if (!history_.change(to, name.toStdString(), {.before = before, .after = parts})) return;
+  show_parts(parts);
+  follow_parameters();
+}
+
 void Workspace::set(const std::string& key, const std::string& text) {
   Parameters to = parameters();
   set_parameter(to, key, text);
@@ -140,13 +149,13 @@ void Workspace::reset(const std::string& key) {
 
 void Workspace::undo() {
   if (!history_.can_undo()) return;
-  history_.undo();
+  if (const auto parts = history_.undo()) show_parts(*parts);
   follow_parameters();
 }
 
 void Workspace::redo() {
   if (!history_.can_redo()) return;
-  history_.redo();
+  if (const auto parts = history_.redo()) show_parts(*parts);
   follow_parameters();
 }
 
@@ -195,6 +204,14 @@ void Workspace::set_view_options(const ViewOptions& options) {
   if (options == view_options_) return;
   view_options_ = options;
   emit view_options_changed();
+}
+
+void Workspace::show_parts(const cli::PictureParts& parts) {
+  ViewOptions options = view_options_;
+  options.legend = parts.legend;
+  options.scale_bar = parts.scale_bar;
+  options.tripod = parts.tripod;
+  set_view_options(options);
 }
 
 void Workspace::set_rotation_center(const Vec3& center) {

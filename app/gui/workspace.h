@@ -63,6 +63,8 @@ class Workspace : public QObject {
   // `name` is what the Undo menu says; see ParameterHistory for gestures. Throws UsageError (and changes nothing) for
   // values that the table refuses.
   void change(const Parameters& to, const QString& name, const std::string& gesture = "");
+  // What a picture brings back: the parameters, and what lies over the view, as one step of the history.
+  void change_look(const Parameters& to, const cli::PictureParts& parts, const QString& name);
   // One row of the table, see set_parameter(); the name is the row's label, the gesture the key. Throws UsageError.
   void set(const std::string& key, const std::string& text);
   void reset(const std::string& key);  // to the default
@@ -82,6 +84,8 @@ class Workspace : public QObject {
   // --- view
   const ViewOptions& view_options() const { return view_options_; }
   void set_view_options(const ViewOptions& options);
+  // Legend, scale bar and tripod of them.
+  void show_parts(const cli::PictureParts& parts);
   // What turning turns about, Å; the middle of the sample until set. No picture changes by setting it.
   const Vec3& rotation_center() const { return rotation_center_; }
   void set_rotation_center(const Vec3& center);

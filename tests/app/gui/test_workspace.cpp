@@ -68,6 +68,31 @@ TEST(ParameterHistory, EndedGesturesAreNotGoneOnWith) {
   EXPECT_EQ(history.now().zoom, 2.0);
 }
 
+TEST(ParameterHistory, GivesBackWhatLayOverTheView) {
+  using cli::PictureParts;
+  const PictureParts before{.legend = true, .scale_bar = true, .tripod = true};
+  const PictureParts after{.legend = false, .scale_bar = true, .tripod = false};
+  ParameterHistory history;
+  Parameters next;
+  next.zoom = 2.0;
+  EXPECT_TRUE(history.change(next, "View of a.png", {.before = before, .after = after}));
+  next.roll = 10.0;
+  EXPECT_TRUE(history.change(next, "Roll"));
+  EXPECT_EQ(history.undo(), std::nullopt);
+  EXPECT_EQ(history.undo(), before);
+  EXPECT_EQ(history.now(), Parameters());
+  EXPECT_EQ(history.redo(), after);
+  EXPECT_EQ(history.now().zoom, 2.0);
+  EXPECT_EQ(history.redo(), std::nullopt);
+  // What lies over the view may be all that changes.
+  EXPECT_FALSE(history.change(next, "View of a.png", {.before = after, .after = after}));
+  EXPECT_TRUE(history.change(next, "View of b.png", {.before = after, .after = before}));
+  EXPECT_FALSE(history.can_redo());
+  EXPECT_EQ(history.undo_name(), "View of b.png");
+  EXPECT_EQ(history.undo(), after);
+  EXPECT_EQ(history.now(), next);
+}
+
 TEST(Workspace, EveryRowIsChangedUndoneAndRedone) {
   const test::TemporaryFolder folder;
   Workspace workspace;
