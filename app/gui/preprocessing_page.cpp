@@ -4,6 +4,7 @@
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QPlainTextEdit>
 #include <QProgressBar>
@@ -129,7 +130,7 @@ QWidget* PreprocessingPage::make_buttons() {
     made->setAutoDefault(true);
     return made;
   };
-  cancel_ = button("preprocessing_cancel", tr("&Cancel"), tr("Stops; nothing half written is left"));
+  cancel_ = button("preprocessing_cancel", tr("&Cancel"), tr("Stops (Escape); nothing half written is left"));
   again_ = button("again", tr("Start &again"), tr("The same file with the same settings once more"));
   back_ = button("back", tr("&Back to loader"), tr("Choose another file, or other settings"));
   go_on_ = button("go_on", tr("&Go on to rendering"), tr("Shows the sample"));
@@ -158,6 +159,14 @@ QWidget* PreprocessingPage::make_buttons() {
 
 void PreprocessingPage::start(const PreprocessingRequest& request) {
   run_.start(request);
+}
+
+void PreprocessingPage::keyPressEvent(QKeyEvent* event) {
+  if (event->matches(QKeySequence::Cancel) && cancel_->isVisible()) {
+    cancel_->click();
+  } else {
+    QWidget::keyPressEvent(event);
+  }
 }
 
 void PreprocessingPage::show_plan() {

@@ -37,6 +37,9 @@ class PreprocessingPage : public QWidget {
   void said(const QString& line);  // every line of the log
   void state_changed();            // of the run
 
+ protected:
+  void keyPressEvent(QKeyEvent* event) override;  // Escape cancels
+
  private:
   QWidget* make_table();
   QWidget* make_buttons();

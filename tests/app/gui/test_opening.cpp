@@ -18,6 +18,8 @@
 #include "app/gui/preprocessing_page.h"
 #include "app/gui/viewport.h"
 #include "core/parameter_file.h"
+#include "preprocess/write_atoms.h"
+#include "samples/samples.h"
 #include "tests/app/gui/window_test.h"
 #include "tests/app/program.h"
 #include "tests/support/temporary_folder.h"
@@ -151,6 +153,16 @@ TEST_F(OpeningInWindow, APictureBringsBackItsView) {
   ASSERT_TRUE(wait_for([&] { return window->workspace().parameters().zoom == 2.5; }));
   EXPECT_EQ(others.size(), 0);
   EXPECT_EQ(window->workspace().view_options(), as_in_the_picture);
+  // It is one step, of which undoing brings back all.
+  auto& undo = child<QAction>(*window, "action_undo");
+  EXPECT_TRUE(undo.text().contains("View of n.png")) << undo.text().toStdString();
+  undo.trigger();
+  EXPECT_EQ(window->workspace().parameters().zoom, 1.0);
+  EXPECT_EQ(window->workspace().view_options(), ViewOptions{.cut_handles = false});
+  EXPECT_TRUE(child<QAction>(*window, "option_tripod").isChecked());
+  child<QAction>(*window, "action_redo").trigger();
+  EXPECT_EQ(window->workspace().parameters().zoom, 2.5);
+  EXPECT_EQ(window->workspace().view_options(), as_in_the_picture);
 
   // Without the material, from the atoms with the picture's settings.
   window->workspace().close_document();
@@ -171,6 +183,34 @@ TEST_F(OpeningInWindow, APictureBringsBackItsView) {
   std::filesystem::remove(place.path("n.crb"));
   window->open(file("n.png"));
   ASSERT_TRUE(wait_for([&] { return problem().isVisible() && problem().text().contains("n.crb"); }));
+}
+
+// As the button, whatever of the page has the focus.
+TEST_F(OpeningInWindow, EscapeCancelsPreprocessing) {
+  // Enough that it is not done before.
+  const Sample sample = make_sample("nacl-cracked", {.atoms = 100000});
+  write_atoms(folder.file("large.dat"), sample.atoms, sample.unit_cell);
+  auto& page_of_it = child<PreprocessingPage>(*window, "preprocessing");
+  window->activateWindow();
+  ASSERT_TRUE(wait_for([&] { return window->isActiveWindow(); }));
+  for (const char* name : {"preprocessing_cancel", "stages", "preprocessing_log", "automatic"}) {
+    window->open(path("large.dat"));
+    ASSERT_TRUE(wait_for([&] { return page_of_it.run().state() == Preprocessing::State::running; }));
+    EXPECT_EQ(page(), &page_of_it);
+    EXPECT_EQ(QApplication::focusWidget(), &child<QPushButton>(page_of_it, "preprocessing_cancel"));
+    auto& focus = child<QWidget>(page_of_it, name);
+    focus.setFocus();
+    ASSERT_EQ(QApplication::focusWidget(), &focus);
+    QTest::keyClick(&focus, Qt::Key_Escape);
+    ASSERT_TRUE(wait_for([&] { return page_of_it.run().state() != Preprocessing::State::running; }));
+    EXPECT_EQ(page_of_it.run().state(), Preprocessing::State::cancelled) << name;
+    EXPECT_TRUE(child<QLabel>(page_of_it, "preprocessing_status").text().contains("Cancelled")) << name;
+    EXPECT_EQ(page(), &page_of_it);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("large.crb")));
+    // Now there is nothing to be cancelled.
+    QTest::keyClick(&page_of_it, Qt::Key_Escape);
+    EXPECT_EQ(page(), &page_of_it);
+  }
 }
 
 TEST_F(OpeningInWindow, PreprocessingUnaskedReplacesNothing) {
