@@ -21,6 +21,16 @@ class MarkedTiles {
     top_ = bottom + height - 1;
   }
 
+  // The same for shaders: the rectangle, both ends included, and of each corner of tiles of 2^shift pixels a side, row
+  // by row of line() corners, how many marked tiles lie left of and below it.
+  struct Window {
+    int left, right, bottom, top;
+  };
+  Window window() const { return {left_, right_, bottom_, top_}; }
+  std::span<const std::uint32_t> sums() const { return sums_; }
+  int line() const { return columns_ + 1; }
+  static constexpr int shift = 3;  // tiles of 8 × 8 pixels
+
   // Whether a tile that these pixels (both ends included, may reach beyond the window) touch has a marked one.
   bool meets(int left, int right, int bottom, int top) const {
     left = std::max(left, left_);
@@ -36,7 +46,6 @@ class MarkedTiles {
   }
 
  private:
-  static constexpr int shift = 3;  // tiles of 8 × 8 pixels
   // Marked tiles left of and below a tile's corner.
   std::uint32_t sum(int column, int row) const {
     return sums_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_ + 1) +

@@ -200,4 +200,10 @@ void Program::use() const {
   glUseProgram(handle_.name());
 }
 
+void dispatch(std::size_t groups) {
+  constexpr std::size_t most_groups = 65535;  // along a dimension, what every driver has
+  const std::size_t rows = std::max<std::size_t>((groups + most_groups - 1) / most_groups, 1);
+  glDispatchCompute(static_cast<GLuint>((groups + rows - 1) / rows), static_cast<GLuint>(rows), 1);
+}
+
 }  // namespace atomesh::gl

@@ -143,4 +143,8 @@ class Program {
   Handle<detail::destroy_program> handle_;
 };
 
+// Runs the compute shader in use in at least so many work groups, in rows: group n is the one with n =
+// gl_WorkGroupID.y · gl_NumWorkGroups.x + gl_WorkGroupID.x, and those beyond have nothing to do.
+void dispatch(std::size_t groups);
+
 }  // namespace atomesh::gl

@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "render/gl/front_faces.h"
 #include "render/gl/marked_tiles.h"
+#include "render/gl/objects.h"
 #include "render/gl/screen_mesh.h"
 
 namespace atomesh::gl {
@@ -43,7 +44,8 @@ class PreparedCells {
   // it some places from `begin` on; the program is used, and a vertex array bound whose attributes 0 and 1 are the
   // cells'.
   virtual bool make_slab(std::size_t begin) = 0;
-  virtual void draw(std::size_t begin, std::size_t count) = 0;
+  // Returns how many: about `most`, at least one, not beyond the slab.
+  virtual std::size_t draw(std::size_t begin, std::size_t most) = 0;
   static std::size_t slab_end(std::size_t begin, std::size_t places) {
     return std::min(begin - begin % cells_per_slab + cells_per_slab, places);
   }
@@ -55,9 +57,11 @@ class PreparedCells {
   virtual std::size_t triangles() const = 0;
 
  protected:
+  // FaceVertex, as the attributes of the vertex array that is bound.
+  static void bind_vertices(const Buffer& vertices);
   // Whether the slabs of so many places are kept.
-  static bool keep(std::size_t places) {
-    return (places + cells_per_slab - 1) / cells_per_slab * slab_bytes <= kept_bytes;
+  static bool keep(std::size_t places, std::size_t kept = kept_bytes) {
+    return (places + cells_per_slab - 1) / cells_per_slab * slab_bytes <= kept;
   }
 };
 

@@ -97,18 +97,15 @@ void ProcessorCells::fill(Slab& slab, std::span<const Index> parts) const {
   glUnmapBuffer(GL_ARRAY_BUFFER);
 }
 
-void ProcessorCells::draw(std::size_t begin, std::size_t count) {
+std::size_t ProcessorCells::draw(std::size_t begin, std::size_t most) {
   const std::size_t from = begin % cells_per_slab;
-  draw(slab_at(begin), from, from + count);
+  const std::size_t count = std::min(most, slab_end(begin, parts_.size()) - begin);
+  draw_cells(slab_at(begin), from, from + count);
+  return count;
 }
 
-void ProcessorCells::draw(const Slab& slab, std::size_t begin, std::size_t end) const {
-  glBindBuffer(GL_ARRAY_BUFFER, slab.vertices.name());
-  glEnableVertexAttribArray(0);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex), nullptr);
-  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(FaceVertex),
-                        reinterpret_cast<const void*>(offsetof(FaceVertex, behind)));
+void ProcessorCells::draw_cells(const Slab& slab, std::size_t begin, std::size_t end) const {
+  bind_vertices(slab.vertices);
   std::vector<GLint> first;
   std::vector<GLsizei> count;
   for (std::size_t share = begin / cells_per_share; share * cells_per_share < end; ++share) {
@@ -153,7 +150,7 @@ void ProcessorCells::draw_marked(const MarkedTiles& tiles, const Progress& progr
       progress.check();
       const std::size_t count = std::min(cells_per_slab, near.size() - drawn);
       fill(marked_, std::span(near).subspan(drawn, count));
-      draw(marked_, 0, count);
+      draw_cells(marked_, 0, count);
       drawn += count;
     }
     near.erase(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(drawn));

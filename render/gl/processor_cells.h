@@ -26,7 +26,7 @@ class ProcessorCells final : public PreparedCells {
   const ScreenView& view() const override { return mesh_->view(); }
   std::size_t places() const override { return parts_.size(); }
   bool make_slab(std::size_t begin) override;
-  void draw(std::size_t begin, std::size_t count) override;
+  std::size_t draw(std::size_t begin, std::size_t most) override;
   void draw_marked(const MarkedTiles& tiles, const Progress& progress) override;
   std::size_t cells() const override { return cells_; }
   std::size_t triangles() const override;
@@ -43,7 +43,7 @@ class ProcessorCells final : public PreparedCells {
 
   Slab& slab_at(std::size_t begin) { return slabs_[keep(parts_.size()) ? begin / cells_per_slab : 0]; }
   void fill(Slab& slab, std::span<const Index> parts) const;
-  void draw(const Slab& slab, std::size_t begin, std::size_t end) const;
+  void draw_cells(const Slab& slab, std::size_t begin, std::size_t end) const;
 
   const Scene& scene_;
   bool by_faces_;

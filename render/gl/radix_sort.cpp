@@ -12,8 +12,6 @@ constexpr std::size_t digit_values = 16;
 constexpr std::size_t tile_size = 2048;
 // order_keys.comp
 constexpr std::size_t group_size = 256;
-// What every driver has.
-constexpr std::size_t most_groups = 65535;
 
 // The next shader sees what this one wrote.
 void finish_storage() {
@@ -71,9 +69,7 @@ void CardOrder::sort(const KeyScale& scale, const Buffer& cells, std::size_t cou
   glUniform1d(keys_.uniform("weight_factor"), scale.weight_factor);
   glUniform1d(keys_.uniform("low"), scale.low);
   glUniform1d(keys_.uniform("over_range"), scale.over_range);
-  const std::size_t groups = (count + group_size - 1) / group_size;
-  const std::size_t rows = (groups + most_groups - 1) / most_groups;
-  glDispatchCompute(static_cast<GLuint>((groups + rows - 1) / rows), static_cast<GLuint>(rows), 1);
+  dispatch((count + group_size - 1) / group_size);
   finish_storage();
   sort_.sort(keyed_, count);
 }

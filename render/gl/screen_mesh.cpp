@@ -18,12 +18,12 @@ constexpr int guard_margin = 64;
 // Sides of the guard, and what is too near, as bits.
 enum Side : std::int32_t { too_near = 1, left = 2, right = 4, above = 8, below = 16 };
 
-Vec3 before_eye(const Vec3f& vertex, const Vec3& offset, const Camera& camera) {
-  const Vec3 p = Vec3(vertex) + offset;
-  return {glm::dot(p, camera.right), glm::dot(p, camera.up), glm::dot(p, camera.forward)};
-}
-
 }  // namespace
+
+Vec3 before_eye(const Vec3& p, const Vec3& offset, const Camera& camera) {
+  const Vec3 q = p + offset;
+  return {glm::dot(q, camera.right), glm::dot(q, camera.up), glm::dot(q, camera.forward)};
+}
 
 PixelGrid pixel_grid(const Camera& camera, const PixelWindow& window, const PixelLattice& lattice) {
   const LatticeGrid pixels(lattice, window);
@@ -38,17 +38,35 @@ PixelGrid pixel_grid(const Camera& camera, const PixelWindow& window, const Pixe
   return grid;
 }
 
-ScreenMesh::ScreenMesh(const Scene& scene, const Camera& camera, const PixelGrid& grid,
-                       const cell_projection::MapIntervals& map, const Progress& progress)
-    : scene_(scene) {
+ScreenView screen_view(const Scene& scene, const Camera& camera, const PixelGrid& grid, int guard) {
   const double radius = std::max(0.5 * scene.bounds.diagonal(), 1e-30);
   const double depth = glm::dot(scene.bounds.center() - camera.eye, camera.forward);
-  view_.perspective = camera.projection == Projection::perspective;
-  view_.reference = view_.perspective ? std::max(depth, 0.25 * radius) : depth;
-  view_.near = view_.perspective ? near_radii * radius : 0.0;
-  view_.grid = grid;
-  // The smaller it is, the less do large triangles cost of what floats hold.
-  view_.guard = std::min(guard_pixels, std::max(grid.columns, grid.rows) / 2 + guard_margin);
+  ScreenView view;
+  view.perspective = camera.projection == Projection::perspective;
+  view.reference = view.perspective ? std::max(depth, 0.25 * radius) : depth;
+  view.near = view.perspective ? near_radii * radius : 0.0;
+  view.grid = grid;
+  view.guard = guard;
+  return view;
+}
+
+glm::dvec2 subpixel_place(const ScreenView& view, const Vec3& p) {
+  const PixelGrid& grid = view.grid;
+  const double scale = view.perspective ? 1.0 / p.z : 1.0;
+  return {((p.x * scale - grid.x) / grid.dx + 0.5 - grid.columns / 2) * subpixels,
+          ((grid.y - p.y * scale) / grid.dy + 0.5 - grid.rows / 2) * subpixels};
+}
+
+double screen_w(const ScreenView& view, const Vec3& p) {
+  return view.perspective ? -view.reference * (1.0 / p.z) : p.z - view.reference;
+}
+
+ScreenMesh::ScreenMesh(const Scene& scene, const Camera& camera, const PixelGrid& grid,
+                       const cell_projection::MapIntervals& map, const Progress& progress)
+    : scene_(scene),
+      // The smaller the guard is, the less do large triangles cost of what floats hold.
+      view_(screen_view(scene, camera, grid,
+                        std::min(guard_pixels, std::max(grid.columns, grid.rows) / 2 + guard_margin))) {
   if (grid.columns == 0 || grid.rows == 0 || scene.tetrahedra.empty()) return;
   project(camera);
   find_cells(map, progress);
@@ -56,12 +74,11 @@ ScreenMesh::ScreenMesh(const Scene& scene, const Camera& camera, const PixelGrid
 }
 
 ScreenVertex ScreenMesh::on_screen(const Vec3& p, float scalar) const {
-  const PixelGrid& grid = view_.grid;
-  const double scale = view_.perspective ? 1.0 / p.z : 1.0;
-  const double column = ((p.x * scale - grid.x) / grid.dx + 0.5 - grid.columns / 2) * subpixels;
-  const double row = ((grid.y - p.y * scale) / grid.dy + 0.5 - grid.rows / 2) * subpixels;
+  const glm::dvec2 place = subpixel_place(view_, p);
+  const double column = place.x;
+  const double row = place.y;
   ScreenVertex vertex;
-  vertex.w = static_cast<float>(view_.perspective ? -view_.reference * scale : p.z - view_.reference);
+  vertex.w = static_cast<float>(screen_w(view_, p));
   vertex.u = view_.perspective ? -scalar * vertex.w : scalar;
   // Beyond the guard by less than a subpixel is on it.
   const std::int32_t guard = view_.guard * subpixels;
@@ -85,7 +102,7 @@ void ScreenMesh::project(const Camera& camera) {
   const Vec3 offset = scene_.center - camera.eye;
   parallel_for(vertices_.size(), vertices_per_range, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      vertices_[v] = on_screen(before_eye(scene_.vertices[v], offset, camera), scene_.scalars[v]);
+      vertices_[v] = on_screen(before_eye(Vec3(scene_.vertices[v]), offset, camera), scene_.scalars[v]);
     }
   });
   float first = std::numeric_limits<float>::max();
@@ -168,7 +185,7 @@ void ScreenMesh::clip_cells(const Camera& camera) {
       const Tetrahedron& t = scene_.tetrahedra[clipped_[n].cell];
       CellCorners cell;
       for (std::size_t k = 0; k < 4; ++k) {
-        cell[k] = {before_eye(scene_.vertices[t[k]], offset, camera), scene_.scalars[t[k]]};
+        cell[k] = {before_eye(Vec3(scene_.vertices[t[k]]), offset, camera), scene_.scalars[t[k]]};
       }
       pieces.clear();
       clip_cell(cell, spaces, pieces);

@@ -87,6 +87,16 @@ struct ScreenView {
   float first_w = 0.0F, last_w = 1.0F;  // of everything that is drawn
 };
 
+// Where the camera sees the scene, all of whose vertices may be up to `guard` pixels from the grid's middle. first_w
+// and last_w are not found yet.
+ScreenView screen_view(const Scene& scene, const Camera& camera, const PixelGrid& grid, int guard);
+// Along the camera's axes from its eye: a point `offset` (Scene::center from the eye) is added to.
+Vec3 before_eye(const Vec3& p, const Vec3& offset, const Camera& camera);
+// Column and row (ScreenVertex) of a point before the eye, not rounded.
+glm::dvec2 subpixel_place(const ScreenView& view, const Vec3& p);
+// Its w.
+double screen_w(const ScreenView& view, const Vec3& p);
+
 class ScreenMesh {
  public:
   // Projects the vertices, and finds the cells to draw: those that meet a pixel's centre and hold a scalar that is not

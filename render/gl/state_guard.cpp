@@ -10,7 +10,36 @@ GLint integer(GLenum name) {
   return value;
 }
 
+// A buffer that was bound may be gone: deleted by a context that shares its objects, or only kept by being bound.
+GLuint living_buffer(GLint value) {
+  return value != 0 && glIsBuffer(static_cast<GLuint>(value)) == GL_TRUE ? static_cast<GLuint>(value) : 0;
+}
+
 }  // namespace
+
+StorageGuard::StorageGuard() : buffer_(integer(GL_SHADER_STORAGE_BUFFER_BINDING)) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const auto n = static_cast<GLuint>(i);
+    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, n, &places_[i].buffer);
+    glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, n, &places_[i].start);
+    glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, n, &places_[i].size);
+  }
+}
+
+StorageGuard::~StorageGuard() {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Place& place = places_[i];
+    const auto n = static_cast<GLuint>(i);
+    const GLuint buffer = living_buffer(place.buffer);
+    if (buffer != 0 && place.size != 0) {
+      glBindBufferRange(GL_SHADER_STORAGE_BUFFER, n, buffer, static_cast<GLintptr>(place.start),
+                        static_cast<GLsizeiptr>(place.size));
+    } else {
+      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, n, buffer);
+    }
+  }
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, living_buffer(buffer_));
+}
 
 StateGuard::StateGuard() {
   for (std::size_t i = 0; i < switches_.size(); ++i) enabled_[i] = glIsEnabled(switches_[i]) == GL_TRUE;
@@ -43,6 +72,7 @@ StateGuard::StateGuard() {
   program_ = integer(GL_CURRENT_PROGRAM);
   vertex_array_ = integer(GL_VERTEX_ARRAY_BINDING);
   array_buffer_ = integer(GL_ARRAY_BUFFER_BINDING);
+  indirect_buffer_ = integer(GL_DRAW_INDIRECT_BUFFER_BINDING);
   pack_buffer_ = integer(GL_PIXEL_PACK_BUFFER_BINDING);
   pack_alignment_ = integer(GL_PACK_ALIGNMENT);
   unpack_buffer_ = integer(GL_PIXEL_UNPACK_BUFFER_BINDING);
@@ -57,7 +87,6 @@ StateGuard::~StateGuard() {
     return value != 0 && is(name(value)) == GL_TRUE ? name(value) : GLuint{0};
   };
   const auto texture = [&](GLint value) { return living(value, [](GLuint n) { return glIsTexture(n); }); };
-  const auto buffer = [&](GLint value) { return living(value, [](GLuint n) { return glIsBuffer(n); }); };
   for (std::size_t i = 0; i < switches_.size(); ++i) (enabled_[i] ? glEnable : glDisable)(switches_[i]);
   for (std::size_t i = 0; i < units_.size(); ++i) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
@@ -89,8 +118,9 @@ StateGuard::~StateGuard() {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, name(read_framebuffer_));
   glUseProgram(living(program_, [](GLuint n) { return glIsProgram(n); }));
   glBindVertexArray(name(vertex_array_));
-  glBindBuffer(GL_ARRAY_BUFFER, buffer(array_buffer_));
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer(pack_buffer_));
+  glBindBuffer(GL_ARRAY_BUFFER, living_buffer(array_buffer_));
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, living_buffer(indirect_buffer_));
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, living_buffer(pack_buffer_));
   glPixelStorei(GL_PACK_ALIGNMENT, pack_alignment_);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, name(unpack_buffer_));
   glPixelStorei(GL_UNPACK_ALIGNMENT, unpack_alignment_);

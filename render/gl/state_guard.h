@@ -7,8 +7,27 @@
 
 namespace atomesh::gl {
 
+// Restores on destruction the storage buffers that render/gl binds, places 0 to 7.
+class StorageGuard {
+ public:
+  StorageGuard();
+  ~StorageGuard();
+  StorageGuard(const StorageGuard&) = delete;
+  StorageGuard& operator=(const StorageGuard&) = delete;
+
+ private:
+  struct Place {
+    GLint buffer = 0;
+    GLint64 start = 0;
+    GLint64 size = 0;  // 0: all of it
+  };
+  std::array<Place, 8> places_{};
+  GLint buffer_ = 0;  // of no place
+};
+
 // Restores on destruction what drawing a volume changes: framebuffer, viewport, scissor, program, vertex array,
-// blending, depth and stencil test, masks, clear values, buffers and the textures of units 0 to texture_units - 1.
+// blending, depth and stencil test, masks, clear values, buffers (storage too) and the textures of units 0 to
+// texture_units - 1.
 class StateGuard {
  public:
   StateGuard();
@@ -47,6 +66,8 @@ class StateGuard {
   GLint program_ = 0;
   GLint vertex_array_ = 0;
   GLint array_buffer_ = 0;
+  GLint indirect_buffer_ = 0;
+  StorageGuard storage_;
   GLint pack_buffer_ = 0;
   GLint pack_alignment_ = 4;
   GLint unpack_buffer_ = 0;

@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "render/gl/processor_cells.h"
 #include "render/gl/state_guard.h"
 
 namespace atomesh::gl {
@@ -152,7 +151,10 @@ void Volume::set_scene(const Scene& scene) {
   scene_ = &scene;
   begun_.reset();
   view_.reset();
-  cells_.reset();
+  cells_ = nullptr;
+  processor_cells_.reset();
+  card_cells_.reset();
+  card_fails_ = false;
   longest_segment_ = 0.0;
 }
 
@@ -168,14 +170,36 @@ bool Volume::project(const Begun& begun, const Progress& progress) {
   if (same_view(begun.camera, begun.grid, begun.parameters)) return true;
   view_.reset();
   const Clock::time_point start = Clock::now();
-  // By faces there is hardly a pixel to repair, but it takes one core 50 ms for a million cells: a card repairs the few
-  // pixels that a Delaunay mesh's keys leave sooner.
-  if (!cells_) {
-    const bool by_faces = by_faces_.value_or(driver_.software || !scene_->delaunay);
-    cells_ = std::make_unique<ProcessorCells>(*scene_, by_faces, driver_.software);
+  last_.on_card = project_on_card(begun, progress);
+  if (!last_.on_card) {
+    // By faces there is hardly a pixel to repair, but it takes one core 50 ms for a million cells: a card repairs the
+    // few pixels that a Delaunay mesh's keys leave sooner.
+    if (!processor_cells_) {
+      const bool by_faces = by_faces_.value_or(driver_.software || !scene_->delaunay);
+      processor_cells_ = std::make_unique<ProcessorCells>(*scene_, by_faces, driver_.software);
+    }
+    cells_ = processor_cells_.get();
+    cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
   }
-  cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
   last_.project_ms = ms_since(start);
+  return true;
+}
+
+// Whether it does.
+bool Volume::project_on_card(const Begun& begun, const Progress& progress) {
+  const bool wanted = prepare_on_card_.value_or(!driver_.software && !by_faces_.value_or(false));
+  if (!wanted || card_fails_ || scene_->tetrahedra.empty()) return false;
+  try {
+    if (!card_cells_) card_cells_ = std::make_unique<CardCells>(*scene_, std::min(guard_pixels, viewport_side_ / 2));
+    if (!card_cells_->fits(begun.camera, begun.grid)) return false;
+    card_cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
+  } catch (const UnavailableError&) {
+    // No memory, or a driver that does not take the shaders: the processor needs less of both.
+    card_cells_.reset();
+    card_fails_ = true;
+    return false;
+  }
+  cells_ = card_cells_.get();
   return true;
 }
 
@@ -269,12 +293,10 @@ void Volume::draw_portion(Begun& begun, const Pace& pace, Progress& progress) {
   const Clock::time_point start = Clock::now();
   if (cells_->make_slab(begun.drawn)) last_.faces_ms += ms_since(start);
   const Clock::time_point drawing = Clock::now();
-  const std::size_t count =
-      std::min(cells_->slab_end(begun.drawn, places) - begun.drawn, pace.portion(begun.places_per_ms));
   bind_picture();
   set_blending(begun.parameters.havs.order != HavsOrder::none);
   use(blend_);
-  cells_->draw(begun.drawn, count);
+  const std::size_t count = cells_->draw(begun.drawn, pace.portion(begun.places_per_ms));
   begun.drawn += count;
   if (pace.limited()) {
     glFinish();
@@ -290,6 +312,7 @@ void Volume::repair(const Progress& progress) {
   };
   glFinish();  // what has been drawn is not the repair's time; it has to look at it anyway
   bind_picture();
+  set_blending(true);  // depths as before
   repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
 }
 

@@ -10,11 +10,12 @@
 #include "core/image.h"
 #include "core/parameters.h"
 #include "core/progress.h"
+#include "render/gl/card_cells.h"
 #include "render/gl/context.h"
 #include "render/gl/objects.h"
 #include "render/gl/order_repair.h"
 #include "render/gl/preintegration_table.h"
-#include "render/gl/prepared_cells.h"
+#include "render/gl/processor_cells.h"
 #include "render/pixel_lattice.h"
 #include "render/renderer.h"
 #include "render/scene.h"
@@ -30,6 +31,8 @@ struct VolumeStats {
   double faces_ms = 0.0;  // front faces, handed to OpenGL
   double draw_ms = 0.0;   // OpenGL
   RepairStats repair;     // of pixels whose cells came in a wrong order
+  // Prepared by the card; the first three times are then of what is asked of it, and the fourth has its work.
+  bool on_card = false;
 };
 
 // Of one context, which is current whenever anything of it is called, the destructor included.
@@ -45,6 +48,11 @@ class Volume {
   // Before set_scene(): whether cells are put in order by the faces they share; else by their keys alone, which is what
   // repairs are measured on. By itself it does what is faster on the driver.
   void set_order_by_faces(bool by_faces) { by_faces_ = by_faces; }
+
+  // Before set_scene(): whether the card prepares cells by itself (card_cells.h) where it can: where none has to be
+  // clipped, and its memory suffices. They are ordered by their keys alone then. By itself all drivers but software do,
+  // unless order by faces is asked for.
+  void set_prepare_on_card(bool on_card) { prepare_on_card_ = on_card; }
 
   // Draws the lattice's pixels of the window, as a picture of their own; neither side more than largest_side(). What
   // was found for the same view is used again: the cells are not projected and sorted anew when nothing but colours
@@ -106,6 +114,7 @@ class Volume {
   void step(Begun& begun, const Pace& pace, Progress& progress);
   // Whether there is anything to draw.
   bool project(const Begun& begun, const Progress& progress);
+  bool project_on_card(const Begun& begun, const Progress& progress);
   void order(const Begun& begun);
   void clear(const Begun& begun);
   void draw_portion(Begun& begun, const Pace& pace, Progress& progress);
@@ -126,8 +135,12 @@ class Volume {
   int viewport_side_ = 0;
   const Scene* scene_ = nullptr;
   std::optional<bool> by_faces_;
+  std::optional<bool> prepare_on_card_;
   std::optional<View> view_;
-  std::unique_ptr<PreparedCells> cells_;  // of the scene
+  std::unique_ptr<ProcessorCells> processor_cells_;  // of the scene, once it is needed
+  std::unique_ptr<CardCells> card_cells_;            // of the scene
+  bool card_fails_ = false;                          // for this scene
+  PreparedCells* cells_ = nullptr;                   // those of the view
   PreintegrationTable table_;
   double longest_segment_ = 0.0;  // Å; of the scene, 0 while unknown
   Texture ray_ends_;
