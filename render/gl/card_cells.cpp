@@ -16,6 +16,10 @@ namespace {
 constexpr std::size_t cells_per_range = 16384;
 // project_vertices.comp
 constexpr std::size_t vertices_per_group = 256;
+// order_clusters.comp
+constexpr std::size_t clusters_per_group = 64;
+// How near to a face's plane, in ways to the eye, floats do not tell its sides.
+constexpr double seen_from_the_side = 1e-6;
 // front_faces.comp
 constexpr std::size_t cells_per_group = 1024;
 constexpr std::size_t groups_per_slab = cells_per_slab / cells_per_group;
@@ -38,7 +42,8 @@ CardCells::CardCells(const Scene& scene, int guard, std::size_t kept)
       kept_(kept),
       project_(Program::compute("project_vertices.comp")),
       faces_(Program::compute("front_faces.comp")),
-      marked_faces_(Program::compute("front_faces.comp", std::array{std::string("MARKED")})) {
+      marked_faces_(Program::compute("front_faces.comp", std::array{std::string("MARKED")})),
+      cluster_order_(Program::compute("order_clusters.comp")) {
   static_assert(sizeof(Command) == command_bytes);
   static_assert(sizeof(Tetrahedron) == 16 && sizeof(ScreenVertex) == 16);
   GLint64 largest = 0;
@@ -57,7 +62,26 @@ CardCells::CardCells(const Scene& scene, int guard, std::size_t kept)
   vertices_.write(std::span<const Vec4f>(vertices), GL_STATIC_DRAW);
   tetrahedra_.write(std::span<const Tetrahedron>(scene.tetrahedra.begin(), cell_count), GL_STATIC_DRAW);
   projected_.reserve(vertex_count * sizeof(ScreenVertex), GL_DYNAMIC_COPY);
-  order_.emplace(CellOrder(scene, false).points());
+  std::vector<OrderPoint> points;
+  {
+    const CellOrder order(scene, false);
+    points.assign(order.points().begin(), order.points().end());
+  }
+  if (scene.delaunay) clusters_ = find_cell_clusters(scene, points);
+  order_.emplace(points);
+  clustered_.assign(cell_count, 0);
+  for (const Index cell : clusters_.cells) clustered_[cell] = 1;
+  std::vector<Vec4f> planes;
+  std::vector<std::uint32_t> pairs;
+  for (const CellClusters::Face& face : clusters_.faces) {
+    planes.push_back(face.plane);
+    pairs.push_back(face.pair);
+  }
+  cluster_starts_.write(std::span<const CellClusters::Start>(clusters_.starts), GL_STATIC_DRAW);
+  cluster_cells_.write(std::span<const Index>(clusters_.cells), GL_STATIC_DRAW);
+  cluster_planes_.write(std::span<const Vec4f>(planes), GL_STATIC_DRAW);
+  cluster_pairs_.write(std::span<const std::uint32_t>(pairs), GL_STATIC_DRAW);
+  clusters_.faces = {};
   commands_.reserve(ceil_quotient(cell_count, cells_per_group) * command_bytes, GL_DYNAMIC_COPY);
   check_errors("taking memory for cells");
 }
@@ -89,21 +113,33 @@ void CardCells::find_candidates(const ColorMap& color_map, const Progress& progr
   color_map_.reset();
   const cell_projection::MapIntervals map(color_map);
   const std::size_t count = scene_.tetrahedra.size();
-  std::vector<std::vector<Index>> found(ceil_quotient(count, cells_per_range));
+  std::vector<std::uint8_t> visible(count);
   parallel_for(count, cells_per_range, [&](std::size_t begin, std::size_t end) {
     progress.check();
-    std::vector<Index>& cells = found[begin / cells_per_range];
-    cells.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const Tetrahedron& t = scene_.tetrahedra[i];
       const auto [a, b, c, d] =
           std::array{scene_.scalars[t[0]], scene_.scalars[t[1]], scene_.scalars[t[2]], scene_.scalars[t[3]]};
-      if (!map.transparent(std::min({a, b, c, d}), std::max({a, b, c, d}))) cells.push_back(static_cast<Index>(i));
+      visible[i] = map.transparent(std::min({a, b, c, d}), std::max({a, b, c, d})) ? 0 : 1;
     }
   });
   std::vector<Index> all;
   all.reserve(count);
-  for (const std::vector<Index>& cells : found) all.insert(all.end(), cells.begin(), cells.end());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (visible[i] != 0 && clustered_[i] == 0) all.push_back(static_cast<Index>(i));
+  }
+  std::vector<glm::uvec2> blocks(clusters_.count());  // start, which are visible
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    blocks[n] = {all.size(), 0};
+    const std::uint32_t first = clusters_.starts[n].cell;
+    for (std::uint32_t at = first; at < clusters_.starts[n + 1].cell; ++at) {
+      const Index cell = clusters_.cells[at];
+      if (visible[cell] == 0) continue;
+      all.push_back(cell);
+      blocks[n].y |= 1U << (at - first);
+    }
+  }
+  blocks_.write(std::span<const glm::uvec2>(blocks));
   candidates_.write(std::span<const Index>(all));
   places_ = all.size();
   color_map_ = color_map;
@@ -149,7 +185,26 @@ void CardCells::project(const Camera& camera, const PixelGrid& grid, const Color
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+void CardCells::order_clusters(const Camera& camera) const {
+  if (clusters_.count() == 0) return;
+  cluster_starts_.bind_storage(0);
+  cluster_cells_.bind_storage(1);
+  cluster_planes_.bind_storage(2);
+  cluster_pairs_.bind_storage(3);
+  blocks_.bind_storage(4);
+  candidates_.bind_storage(5);
+  const Vec3 eye = view_.perspective ? camera.eye - scene_.center : -camera.forward;
+  cluster_order_.use();
+  glUniform1ui(cluster_order_.uniform("count"), static_cast<GLuint>(clusters_.count()));
+  glUniform4f(cluster_order_.uniform("eye"), static_cast<GLfloat>(eye.x), static_cast<GLfloat>(eye.y),
+              static_cast<GLfloat>(eye.z), view_.perspective ? 1.0F : 0.0F);
+  glUniform1f(cluster_order_.uniform("least"), static_cast<GLfloat>(seen_from_the_side * glm::length(eye)));
+  dispatch(ceil_quotient(clusters_.count(), clusters_per_group));
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
 void CardCells::order(const Camera& camera) {
+  order_clusters(camera);
   order_->sort(key_scale(camera, scene_), candidates_, places_);
   slab_numbers_.assign(slabs_.size(), ceil_quotient(places_, cells_per_slab));  // none
   totals_.reset();

@@ -1,15 +1,16 @@
 // Cells prepared by the card alone: from frame to frame nothing but the camera is sent, and nothing waits for the card.
 //
 // Vertices are projected and snapped (as ScreenMesh does, in double), the cells that are not transparent put in order
-// by their keys (CardOrder), and the front faces of consecutive ones written as vertices, with the commands that draw
-// them. Whatever decides is computed in the same steps as on the processor; signs of areas are exact. Cells beside the
-// picture have no faces. For views in which some cell has to be clipped there is ProcessorCells.
+// by their keys (CardOrder; those that share a sphere by their faces, cell_clusters.h), and the front faces of
+// consecutive ones written as vertices, with the commands that draw them. Whatever decides is computed in the same
+// steps as on the processor; signs of areas are exact. Cells beside the picture have no faces. For views in which some
+// cell has to be clipped there is ProcessorCells.
 //
-// Bytes on the card, V vertices and N cells: 32 V + 52 N, and 288 N of faces, for up to kept_bytes of them. Read and
-// written for a new view: 32 V projecting; 16 + 4 + 8 N of keys, 24 × 8 N sorting them, 8 + 16 + 4 × 16 N gathered and
-// 192 N (two faces each on average) written for faces, and as much read to draw them. Of a million cells and 170,000
-// vertices 0.7 GB: 1.4 ms at 500 GB/s; what fills pixels comes on top. 300 operations in double a cell: 2 ms on cards
-// that do 150 G/s.
+// Bytes on the card, V vertices and N cells: 32 V + 52 N (28 N more where all cells are of clusters), and 288 N of
+// faces, for up to kept_bytes of them. Read and written for a new view: 32 V projecting; 32 N putting clusters in
+// order; 28 N of keys, 24 × 8 N sorting them; 88 N gathered and 192 N (two faces each on average) written for faces,
+// and as much read to draw them. Of a million cells and 170,000 vertices 0.73 GB: 1.5 ms at 500 GB/s; what fills pixels
+// comes on top. 300 operations in double a cell: 2 ms on cards that do 150 G/s.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "core/color_map.h"
+#include "render/gl/cell_clusters.h"
 #include "render/gl/objects.h"
 #include "render/gl/prepared_cells.h"
 #include "render/gl/radix_sort.h"
@@ -65,6 +67,7 @@ class CardCells final : public PreparedCells {
 
   std::array<Vec3, 8> box_before_eye(const Camera& camera) const;
   void find_candidates(const ColorMap& color_map, const Progress& progress);
+  void order_clusters(const Camera& camera) const;
   void reserve_slabs();
   const Buffer& slab_at(std::size_t begin) const;
   void make_faces(const Program& program, std::size_t begin, std::size_t end, const Buffer& faces,
@@ -80,12 +83,17 @@ class CardCells final : public PreparedCells {
   Program project_;
   Program faces_;
   Program marked_faces_;
+  Program cluster_order_;
   std::optional<CardOrder> order_;
+  CellClusters clusters_;
+  std::vector<std::uint8_t> clustered_;  // whether a cell is of one
+  Buffer cluster_starts_, cluster_cells_, cluster_planes_, cluster_pairs_;
+  Buffer blocks_;  // where each cluster's cells are among the candidates, and which of them
   Buffer vertices_;
   Buffer tetrahedra_;
   Buffer projected_;
   std::optional<ColorMap> color_map_;  // of which the candidates are
-  Buffer candidates_;                  // cells that are not transparent, ascending
+  Buffer candidates_;                  // cells that are not transparent: those of a cluster one behind another
   std::size_t places_ = 0;
   ScreenView view_;
   std::vector<Buffer> slabs_;              // all of the view's, or two in turn
