@@ -2,6 +2,8 @@
 
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
+#include <QOpenGLExtraFunctions>
+#include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
 #include <QPainter>
 #include <chrono>
@@ -9,6 +11,8 @@
 #include <new>
 #include <utility>
 
+#include "core/error.h"
+#include "core/progress.h"
 #include "core/stopwatch.h"
 #include "render/gl/coarse_volume.h"
 
@@ -18,6 +22,13 @@ namespace {
 
 // Who drags at most rests for so long, ms, in between.
 constexpr int at_rest = 150;
+
+// Of refining, ms: between them the window answers.
+constexpr double slice = 15.0;
+
+double rays_of(const Camera& camera, const Parameters& parameters) {
+  return static_cast<double>(camera.width) * camera.height * parameters.supersampling * parameters.supersampling;
+}
 
 }  // namespace
 
@@ -41,10 +52,10 @@ CardView::CardView(QWidget* parent) : QOpenGLWidget(parent) {
   setFocusPolicy(Qt::NoFocus);
   rest_.setSingleShot(true);
   rest_.setInterval(at_rest);
-  connect(&rest_, &QTimer::timeout, this, [this] {
-    detail_ = {};
-    update();
-  });
+  next_slice_.setSingleShot(true);
+  next_slice_.setInterval(0);
+  connect(&rest_, &QTimer::timeout, this, &CardView::refine);
+  connect(&next_slice_, &QTimer::timeout, this, &CardView::refine);
 }
 
 CardView::~CardView() {
@@ -60,35 +71,42 @@ void CardView::release() {
   disconnect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &CardView::release);
   makeCurrent();
   gpu_.release();
+  drop_volume();
+  doneCurrent();
+}
+
+void CardView::drop_volume() {
+  stop_refining();
   volume_.reset();
   coarse_.reset();
-  doneCurrent();
+  shown_.reset();
+  next_.reset();
+  stale_ = true;
 }
 
 void CardView::set(const std::shared_ptr<const WorkerPicture>& scene, const Parameters& parameters,
                    const Camera& camera, const QImage& overlay) {
   const bool volume = scene && scene->scene->mode == Mode::volume;
-  if (scene != scene_) {
-    gpu_.set_scene(scene && !volume ? scene->scene : nullptr);
-    scene_ = scene;
-    moving_.forget();
-    rest_.stop();
-    detail_ = {};
-  } else if (volume && parameters != parameters_) {
-    if (parameters.supersampling != parameters_.supersampling || camera.width != camera_.width ||
-        camera.height != camera_.height) {
-      moving_.forget();
-    }
-    detail_ = moving_.next();
-    if (detail_.whole()) {
-      rest_.stop();
-    } else {
-      rest_.start();
-    }
-  }
+  const bool other_size = camera.width != camera_.width || camera.height != camera_.height;
+  const bool changed = scene != scene_ || parameters != parameters_ || other_size;
+  if (scene != scene_) gpu_.set_scene(scene && !volume ? scene->scene : nullptr);
+  scene_ = scene;
   parameters_ = parameters;
   camera_ = camera;
   overlay_ = overlay;
+  if (!volume) {
+    stop_refining();
+    stale_ = true;
+    detail_ = {};
+  } else if (changed) {
+    stop_refining();
+    stale_ = true;
+    moving_.expect(static_cast<double>(scene->scene->tetrahedra.size()), rays_of(camera, parameters),
+                   scene->scene->solids != nullptr);
+    detail_ = moving_.next();
+  } else if (!stale_ && !detail_.whole() && !refining_) {
+    rest_.start();  // it was hidden
+  }
   update();
 }
 
@@ -100,6 +118,18 @@ void CardView::paintEvent(QPaintEvent* event) {
   QOpenGLWidget::paintEvent(event);
 }
 
+void CardView::hideEvent(QHideEvent* event) {
+  stop_refining();
+  QOpenGLWidget::hideEvent(event);
+}
+
+// Binds it, of the picture's size.
+void CardView::bind(Target& target) const {
+  const QSize size(camera_.width, camera_.height);
+  if (!target || target->size() != size) target = std::make_unique<QOpenGLFramebufferObject>(size);
+  if (!target->isValid() || !target->bind()) throw UnavailableError("OpenGL: a picture of this size cannot be made");
+}
+
 void CardView::draw_volume() {
   gpu_.drop_scene();
   if (!volume_) volume_ = std::make_unique<gl::VolumePicture>();
@@ -107,16 +137,23 @@ void CardView::draw_volume() {
     coarse_.reset();
     volume_->set_scene(scene_->scene);
   }
+  bind(shown_);
+  if (detail_.whole()) {
+    // It was expected to take less than half of this.
+    volume_->begin(camera_, parameters_);
+    if (volume_->proceed(2.0 * moving_budget)) {
+      moving_.drew_whole(volume_->last(), parameters_.supersampling);
+      return;
+    }
+    moving_.gave_up_whole(2.0 * moving_budget);
+    detail_ = moving_.next();
+  }
   if (detail_.cells < 1.0) {
     draw_coarse_volume();
     return;
   }
   volume_->draw(camera_, parameters_, {.stride = detail_.stride});
-  if (detail_.whole()) {
-    moving_.drew_whole(volume_->last(), parameters_.supersampling);
-  } else {
-    moving_.drew_moving(volume_->last(), detail_);
-  }
+  moving_.drew_moving(volume_->last(), detail_);
 }
 
 void CardView::draw_coarse_volume() {
@@ -136,35 +173,106 @@ void CardView::draw_coarse_volume() {
   moving_.drew_moving(coarse_->last(), detail_);
 }
 
+void CardView::show_volume() {
+  QOpenGLExtraFunctions& gl = *context()->extraFunctions();
+  GLint screen = 0;
+  gl.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &screen);
+  if (stale_) {
+    const auto start = std::chrono::steady_clock::now();
+    stop_refining();
+    draw_volume();
+    shown_ms_ = ms_since(start);
+    stale_ = false;
+    if (!detail_.whole()) rest_.start();
+  }
+  gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_->handle());
+  gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(screen));
+  gl.glDisable(GL_SCISSOR_TEST);
+  gl.glBlitFramebuffer(0, 0, shown_->width(), shown_->height(), 0, 0, shown_->width(), shown_->height(),
+                       GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl.glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(screen));
+  gl.glFinish();
+}
+
+// One slice of the whole picture, which is begun where it is not.
+void CardView::refine() {
+  // What is stale is painted first.
+  if (failed_ || stale_ || detail_.whole() || !isVisible() || !context()->isValid()) return;
+  makeCurrent();
+  bool finished = false;
+  double fraction = 0.0;
+  if (!draw_or_fail([&] {
+        const auto start = std::chrono::steady_clock::now();
+        bind(next_);
+        if (!refining_) {
+          volume_->begin(camera_, parameters_);
+          refining_ = true;
+          refined_ms_ = 0.0;
+        }
+        Progress progress([&fraction](std::string_view, double drawn) { fraction = drawn; });
+        finished = volume_->proceed(slice, progress);
+        refined_ms_ += ms_since(start);
+      })) {
+    return;
+  }
+  context()->functions()->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
+  if (!finished) {
+    if (fraction > 0.0) emit refining(fraction);
+    next_slice_.start();
+    return;
+  }
+  refining_ = false;
+  moving_.drew_whole(volume_->last(), parameters_.supersampling);
+  std::swap(shown_, next_);
+  shown_ms_ = refined_ms_;
+  detail_ = {};
+  update();
+}
+
+void CardView::stop_refining() {
+  rest_.stop();
+  next_slice_.stop();
+  if (refining_) volume_->give_up();
+  refining_ = false;
+}
+
+template <class Draw>
+bool CardView::draw_or_fail(Draw&& draw) {
+  try {
+    draw();
+    return true;
+  } catch (const std::bad_alloc&) {
+    fail(tr("there is not enough memory"));
+  } catch (const std::exception& error) {
+    fail(QString::fromUtf8(error.what()));
+  }
+  return false;
+}
+
 void CardView::fail(const QString& message) {
   if (failed_) return;
   failed_ = true;
-  volume_.reset();
-  coarse_.reset();
+  drop_volume();
   emit failed(message);
 }
 
 void CardView::paintGL() {
   if (!scene_ || failed_) return;
   const auto start = std::chrono::steady_clock::now();
-  try {
-    if (scene_->scene->mode == Mode::volume) {
-      draw_volume();
-    } else {
-      volume_.reset();
-      coarse_.reset();
-      gpu_.draw(camera_, parameters_);
-      context()->functions()->glFinish();
-      gl::require_living_context();
-    }
-  } catch (const std::bad_alloc&) {
-    fail(tr("there is not enough memory"));
-    return;
-  } catch (const std::exception& error) {
-    fail(QString::fromUtf8(error.what()));
+  const bool volume = scene_->scene->mode == Mode::volume;
+  if (!draw_or_fail([&] {
+        if (volume) {
+          show_volume();
+        } else {
+          drop_volume();
+          gpu_.draw(camera_, parameters_);
+          context()->functions()->glFinish();
+          gl::require_living_context();
+        }
+      })) {
     return;
   }
-  const double ms = ms_since(start);
+  const double ms = volume ? shown_ms_ : ms_since(start);
   const bool whole = detail_.whole();
   if (!overlay_.isNull()) {
     QPainter painter(this);

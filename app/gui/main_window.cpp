@@ -124,6 +124,7 @@ void MainWindow::follow_workspace() {
   connect(&workspace_, &Workspace::complained, this, &MainWindow::complain);
   connect(&workspace_, &Workspace::said, this, [this](const QString& line) { hint_->setText(line); });
   connect(viewport_, &Viewport::frame_shown, this, &MainWindow::update_status);
+  connect(viewport_, &Viewport::refining, this, &MainWindow::show_refining);
 }
 
 void MainWindow::follow(Job* job) {
@@ -161,7 +162,7 @@ void MainWindow::update_title() {
   setWindowTitle(what.isEmpty() ? QStringLiteral("atomesh") : what + " – atomesh");
 }
 
-void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms) {
+void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms, bool whole) {
   const auto& document = workspace_.document();
   if (!document) return;
   const Material& material = *document->material;
@@ -172,11 +173,17 @@ void MainWindow::update_status(const std::shared_ptr<const WorkerPicture>& pictu
   counts_->setText(counts.join(", "));
   const double ms = picture ? picture->ms : gpu_ms;
   QString text = ms < 100.0 ? tr("%1 ms").arg(ms, 0, 'f', 1) : tr("%1 ms").arg(ms, 0, 'f', 0);
-  if (picture && !picture->complete()) text += tr(", picture %1 of %2").arg(picture->level).arg(picture->levels);
+  if (!whole) text += tr(", picture %1 of %2").arg(picture ? picture->level : 1).arg(picture ? picture->levels : 2);
+  frame_text_ = text;
   frame_->setText(text);
   frame_->setToolTip(
       picture ? tr("Drawn by the processor")
               : tr("Drawn by the graphics card: %1").arg(QString::fromStdString(gpu_of_this_machine().renderer)));
+}
+
+// While the card draws the whole of a picture that it shows with less detail.
+void MainWindow::show_refining(double fraction) {
+  frame_->setText(tr("%1 (%2 %)").arg(frame_text_).arg(static_cast<int>(100.0 * fraction)));
 }
 
 void MainWindow::next_mode(int step) {

@@ -82,7 +82,8 @@ class MainWindow : public QMainWindow {
   void follow_workspace();
   void update_title();
   void update_actions();
-  void update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms);
+  void update_status(const std::shared_ptr<const WorkerPicture>& picture, double gpu_ms, bool whole);
+  void show_refining(double fraction);
   void follow(Job* job);
   void complain(const QString& message);
   void change_view(const QString& name, const std::function<void(Parameters&)>& change);
@@ -119,6 +120,7 @@ class MainWindow : public QMainWindow {
   QMenu* recent_menu_ = nullptr;
   QLabel* counts_ = nullptr;
   QLabel* frame_ = nullptr;
+  QString frame_text_;  // but for how far it is refined
   QLabel* hint_ = nullptr;
   QProgressBar* progress_ = nullptr;
   QToolButton* cancel_ = nullptr;

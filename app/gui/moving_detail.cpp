@@ -4,6 +4,25 @@
 
 namespace atomesh::gui {
 
+namespace {
+
+// Of a volume of which nothing is known: milliseconds to project and sort a cell, two cores.
+constexpr double guessed_ms_per_cell = 2e-4;
+
+}  // namespace
+
+void MovingDetail::expect(double cells, double rays, bool solids) {
+  if (known_ && cells_ > 0.0) whole_.cells *= cells / cells_;
+  if (known_ && rays_ > 0.0) whole_.pixels *= rays / rays_;
+  if (!solids) whole_.solids = 0.0;
+  cells_ = cells;
+  rays_ = rays;
+}
+
+void MovingDetail::gave_up_whole(double ms) {
+  whole_.pixels = std::max(whole_.pixels, 2.0 * ms);
+}
+
 void MovingDetail::drew_whole(const gl::VolumePicture::Times& times, int n) {
   // Of a view that was there before only the pixels are drawn anew.
   const auto last = [this](double gl::VolumePicture::Times::*part) { return known_ ? whole_.*part : 0.0; };
@@ -27,8 +46,14 @@ void MovingDetail::drew_moving(const gl::VolumePicture::Times& times, const Deta
 }
 
 Detail MovingDetail::next() const {
-  if (!known_ || whole_.cells + whole_.solids + whole_.pixels <= moving_budget) return {};
   Detail detail;
+  if (!known_) {
+    const double most = 0.5 * moving_budget / guessed_ms_per_cell;
+    detail.stride = 8;
+    if (cells_ > most) detail.cells = std::max(most / cells_, 1e-3);
+    return detail;
+  }
+  if (whole_.cells + whole_.solids + whole_.pixels <= moving_budget) return {};
   // Solids are there always; but where they take all of the time, the others have half of it all the same.
   const double budget = std::max(0.5 * moving_budget, moving_budget - whole_.solids);
   // Half of the time is the cells', half the pixels'; what one does not need the other has.
@@ -44,6 +69,7 @@ Detail MovingDetail::next() const {
     detail.stride *= 2;
     pixels = whole_.pixels / (n_ * n_ * detail.stride * detail.stride);
   }
+  if (detail.whole()) detail.stride = 2;  // all of it is too much
   return detail;
 }
 

@@ -17,8 +17,11 @@ struct Detail {
 
 class MovingDetail {
  public:
-  // Another scene, size or number of rays: nothing is known of how long a picture takes.
-  void forget() { known_ = false; }
+  // The next pictures are of a volume of so many cells, whole with so many rays, with or without something in it. Of
+  // one of which nothing is known little is drawn; what is known of another is taken to hold for each cell and ray.
+  void expect(double cells, double rays, bool solids);
+  // A whole picture was not done after so many milliseconds.
+  void gave_up_whole(double ms);
   // A picture of a view that moves took so long: the next may have more rays, or fewer.
   void drew_moving(const gl::VolumePicture::Times& times, const Detail& detail);
   // A whole picture took so long, of n × n rays a pixel.
@@ -28,6 +31,8 @@ class MovingDetail {
 
  private:
   bool known_ = false;
+  double cells_ = 0.0;
+  double rays_ = 0.0;
   gl::VolumePicture::Times whole_;
   int n_ = 1;
   int stride_ = 0;  // as drew_moving() found; 0 where it was not called since

@@ -113,7 +113,7 @@ void TimingPanel::show_stages() {
                                          : tr("&Stages: %1").arg(text_of(time_text(total_ms(stages_)))));
 }
 
-void TimingPanel::note_picture(std::shared_ptr<const WorkerPicture> picture, double gpu_ms) {
+void TimingPanel::note_picture(std::shared_ptr<const WorkerPicture> picture, double gpu_ms, bool whole) {
   FrameTimes frame;
   std::uint64_t number = 0;
   double ms = gpu_ms;
@@ -128,11 +128,18 @@ void TimingPanel::note_picture(std::shared_ptr<const WorkerPicture> picture, dou
     frame.levels = picture->levels;
     number = 2 * picture->number;
     ms = picture->ms;
+    card_refines_ = false;
   } else {
     frame.drawn_by = "graphics card";
     frame.width = workspace_.width();
     frame.height = workspace_.height();
-    number = 2 * ++card_pictures_ + 1;  // each is whole at once
+    // Whole at once, or the second of two.
+    const bool second = whole && card_refines_;
+    frame.level = second ? 2 : 1;
+    frame.levels = whole && !second ? 1 : 2;
+    if (!second) ++card_pictures_;
+    card_refines_ = !whole;
+    number = 2 * card_pictures_ + 1;
   }
   set_frame(clock_.shown(frame, number, ms, static_cast<double>(watch_.nsecsElapsed()) * 1e-6));
 }

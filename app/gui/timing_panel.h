@@ -26,7 +26,7 @@ class TimingPanel : public QWidget {
 
  public slots:
   // For Viewport::frame_shown.
-  void note_picture(std::shared_ptr<const atomesh::gui::WorkerPicture> picture, double gpu_ms);
+  void note_picture(std::shared_ptr<const atomesh::gui::WorkerPicture> picture, double gpu_ms, bool whole = true);
   void copy();
 
  protected:
@@ -46,6 +46,7 @@ class TimingPanel : public QWidget {
   FrameClock clock_;
   QElapsedTimer watch_;
   std::uint64_t card_pictures_ = 0;
+  bool card_refines_ = false;  // the last of them was not whole
   QLabel* stages_title_ = nullptr;
   QTreeWidget* stages_tree_ = nullptr;
   QTreeWidget* frame_tree_ = nullptr;

@@ -128,7 +128,7 @@ void Viewport::take(std::shared_ptr<const WorkerPicture> picture) {
   picture_ = std::move(picture);
   if (card_ != nullptr) card_->hide();
   refresh_overlay();
-  emit frame_shown(picture_, 0.0);
+  emit frame_shown(picture_, 0.0, picture_->complete());
 }
 
 QImage Viewport::overlay(const WorkerPicture& of, const Parameters& parameters, const Camera& camera) const {
@@ -165,12 +165,13 @@ void Viewport::show_on_card() {
     connect(card_, &CardView::painted, this, [this](double ms, bool whole) {
       if (!drawn_by_gpu()) return;
       card_painted_ = whole;
-      emit frame_shown(nullptr, ms);
+      emit frame_shown(nullptr, ms, whole);
       if (whole && !was_settled_) {
         was_settled_ = true;
         emit became_settled();
       }
     });
+    connect(card_, &CardView::refining, this, &Viewport::refining);
     connect(card_, &CardView::failed, this,
             [this] { card_failed_[static_cast<std::size_t>(scene_->scene->mode)] = true; });
     connect(card_, &CardView::failed, this, &Viewport::give_up_card, Qt::QueuedConnection);

@@ -36,8 +36,10 @@ class Viewport : public QWidget {
 
  signals:
   // A frame is on its way to the screen: of the CPU renderers, with all that is known of it; or (null) of the card,
-  // which took so long.
-  void frame_shown(std::shared_ptr<const atomesh::gui::WorkerPicture> picture, double gpu_ms);
+  // which took so long. Whether it is complete.
+  void frame_shown(std::shared_ptr<const atomesh::gui::WorkerPicture> picture, double gpu_ms, bool whole);
+  // So large a part of the whole frame is drawn by the card, which shows one with less detail.
+  void refining(double fraction);
   void became_settled();
 
  protected:

@@ -280,6 +280,11 @@ bool VolumePicture::proceed(double milliseconds, Progress& progress) {
   return true;
 }
 
+void VolumePicture::give_up() {
+  begun_.reset();
+  pipeline_->cancel_solids();
+}
+
 void VolumePicture::draw(const Camera& camera, const Parameters& parameters, const PictureDetail& detail,
                          Progress& progress) {
   begin(camera, parameters, detail);

@@ -58,6 +58,9 @@ class VolumePicture {
   // beside, by a thread of their own.
   bool proceed(double milliseconds, Progress& progress = no_progress());
 
+  // Drops what was begun and not finished; leaves OpenGL alone.
+  void give_up();
+
   // Milliseconds of the picture that was begun last.
   struct Times {
     double cells = 0.0;   // projecting, sorting and sending them; 0 where the view was the one before

@@ -214,6 +214,16 @@ TEST(TimingPanel, FramesOfBothWhoDraw) {
   EXPECT_EQ(value("Size"), "320 × 200 pixels");
   EXPECT_EQ(value("Whole picture"), "4.00 ms");
   EXPECT_TRUE(value("Steps of all rays").isEmpty());
+  // With less detail at first.
+  panel.note_picture(nullptr, 6.0, false);
+  EXPECT_EQ(value("First picture"), "6.00 ms");
+  EXPECT_EQ(value("Whole picture"), "drawing 1 of 2");
+  panel.note_picture(nullptr, 80.0, true);
+  EXPECT_EQ(value("First picture"), "6.00 ms");
+  EXPECT_EQ(value("Whole picture"), "80.0 ms");
+  panel.note_picture(nullptr, 4.0, true);
+  EXPECT_EQ(value("First picture"), "");
+  EXPECT_EQ(value("Whole picture"), "4.00 ms");
   child<QPushButton>(panel, "timing_copy").click();
   const QString text = QApplication::clipboard()->text();
   EXPECT_TRUE(text.contains("tetrahedralize\t1.30 s\n")) << text.toStdString();

@@ -8,9 +8,47 @@ namespace {
 
 TEST(MovingDetail, IsAllWhereThereIsTime) {
   MovingDetail detail;
-  EXPECT_EQ(detail.next(), Detail());  // nothing known
   detail.drew_whole({.cells = 10.0, .pixels = 20.0}, 1);
   EXPECT_EQ(detail.next(), Detail());
+}
+
+TEST(MovingDetail, IsLittleWhereNothingIsKnown) {
+  MovingDetail detail;
+  EXPECT_EQ(detail.next(), (Detail{.stride = 8}));
+  detail.expect(10000.0, 1e6, false);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 8}));
+  detail.expect(825000.0, 1e6, false);
+  EXPECT_EQ(detail.next().stride, 8);
+  EXPECT_NEAR(detail.next().cells, 0.1, 1e-12);
+}
+
+// Of another volume, or picture, each cell and each ray takes as long.
+TEST(MovingDetail, IsExpectedOfOthersByWhatIsKnown) {
+  MovingDetail detail;
+  detail.expect(1e5, 1e6, false);
+  detail.drew_whole({.cells = 5.0, .pixels = 10.0}, 1);
+  EXPECT_EQ(detail.next(), Detail());
+  detail.expect(2e5, 2e6, false);  // 10 and 20
+  EXPECT_EQ(detail.next(), Detail());
+  detail.expect(2e5, 8e6, false);  // 10 and 80
+  EXPECT_EQ(detail.next(), (Detail{.stride = 2}));
+  detail.expect(2e6, 1e5, false);  // 100 and 1
+  EXPECT_EQ(detail.next().stride, 1);
+  EXPECT_NEAR(detail.next().cells, 0.32, 1e-12);
+  detail.expect(1e5, 1e6, true);
+  EXPECT_EQ(detail.next(), Detail());
+  detail.drew_whole({.cells = 5.0, .solids = 50.0, .pixels = 10.0}, 1);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 2}));
+  detail.expect(1e5, 1e6, false);  // nothing in it any more
+  EXPECT_EQ(detail.next(), Detail());
+}
+
+TEST(MovingDetail, IsLessWhereTheWholeWasGivenUp) {
+  MovingDetail detail;
+  detail.expect(1e5, 1e6, false);
+  detail.drew_whole({.cells = 5.0, .pixels = 10.0}, 1);
+  detail.gave_up_whole(66.0);
+  EXPECT_EQ(detail.next(), (Detail{.stride = 4}));
 }
 
 TEST(MovingDetail, IsAsManyRaysAsThereIsTimeFor) {
@@ -24,8 +62,6 @@ TEST(MovingDetail, IsAsManyRaysAsThereIsTimeFor) {
   // Of n × n rays a pixel one is drawn.
   detail.drew_whole({.cells = 10.0, .pixels = 800.0}, 4);
   EXPECT_EQ(detail.next().stride, 2);
-  detail.forget();
-  EXPECT_EQ(detail.next(), Detail());
 }
 
 TEST(MovingDetail, KnowsTheCellsTimeThoughTheViewWasThere) {
@@ -85,7 +121,7 @@ TEST(MovingDetail, FollowsWhatPicturesOnTheWayTake) {
   // A rest in between changes nothing.
   detail.drew_whole({.cells = 10.0, .pixels = 4000.0}, 2);
   EXPECT_EQ(detail.next().stride, 8);
-  detail.forget();
+  // Of other rays a pixel nothing of that holds.
   detail.drew_whole({.cells = 10.0, .pixels = 80.0}, 1);
   EXPECT_EQ(detail.next().stride, 2);
 }
