@@ -1,6 +1,5 @@
 #include "render/gl/solid_rays.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <tuple>
@@ -33,43 +32,33 @@ bool same_solids(const SolidView& a, const SolidView& b) {
   return parameters == b.parameters;
 }
 
-SolidDrawing::~SolidDrawing() {
-  give_up();
-}
-
 void SolidDrawing::cancel() {
-  if (beside_) beside_->progress.request_cancel();
-}
-
-void SolidDrawing::give_up() {
-  if (!beside_) return;
-  cancel();
-  beside_->rays.wait();
-  beside_.reset();
+  beside_.cancel();
 }
 
 std::optional<SolidRays> SolidDrawing::proceed(const std::shared_ptr<const Scene>& solids, const SolidView& view,
                                                double milliseconds, Progress& progress) {
   if (!std::isfinite(milliseconds)) return draw(*solids, view, progress);
   progress.check();
-  if (!beside_ || beside_->progress.cancelled() || beside_->solids != solids || !same_solids(beside_->view, view)) {
-    give_up();
-    beside_ = std::make_unique<Beside>();
-    beside_->solids = solids;
-    beside_->view = view;
-    beside_->rays = std::async(std::launch::async, [this, task = beside_.get()] {
-      return draw_now(*task->solids, task->view, task->progress);
-    });
+  const bool ours =
+      beside_.started() && !beside_.cancelled() && task_.solids == solids && same_solids(task_.view, view);
+  if (!ours) {
+    // What is given up comes to its end first.
+    if (!beside_.over(milliseconds)) {
+      beside_.cancel();
+      return std::nullopt;
+    }
+    beside_.give_up();
+    task_ = {.solids = solids, .view = view, .rays = {}};
+    beside_.start([this](Progress& own) { task_.rays = draw_now(*task_.solids, task_.view, own); });
   }
-  // No longer than the clock can tell.
-  const std::chrono::duration<double, std::milli> patience(std::min(milliseconds, 1e6));
-  if (beside_->rays.wait_for(patience) != std::future_status::ready) return std::nullopt;
-  const std::unique_ptr<Beside> done = std::move(beside_);
-  return done->rays.get();
+  if (!beside_.over(milliseconds)) return std::nullopt;
+  beside_.take();
+  return std::exchange(task_, {}).rays;
 }
 
 SolidRays SolidDrawing::draw(const Scene& solids, const SolidView& view, Progress& progress) {
-  give_up();
+  beside_.give_up();
   return draw_now(solids, view, progress);
 }
 
@@ -107,7 +96,8 @@ SolidRays SolidDrawing::draw_now(const Scene& solids, const SolidView& view, Pro
 }
 
 void SolidDrawing::forget() {
-  give_up();
+  beside_.give_up();
+  task_ = {};
   image_ = Image();
   depth_ = {};
 }

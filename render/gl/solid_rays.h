@@ -2,7 +2,6 @@
 // the renderer "havs" has it.
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "core/image.h"
 #include "core/parameters.h"
 #include "core/progress.h"
+#include "render/gl/beside.h"
 #include "render/pixel_lattice.h"
 #include "render/scene.h"
 
@@ -35,15 +35,9 @@ struct SolidRays {
   double render_ms = 0.0;     // the rays
 };
 
-// Not to be moved.
+// Its end cancels what is drawn and waits for that.
 class SolidDrawing {
  public:
-  SolidDrawing() = default;
-  // Cancels what is drawn and waits for that.
-  ~SolidDrawing();
-  SolidDrawing(const SolidDrawing&) = delete;
-  SolidDrawing& operator=(const SolidDrawing&) = delete;
-
   // Of a scene of mode atoms or surface. Returns when it is done. Throws CancelledError.
   SolidRays draw(const Scene& solids, const SolidView& view, Progress& progress);
   // The same for who has only so many milliseconds: nothing where it is not done by then; it goes on beside the caller,
@@ -57,18 +51,18 @@ class SolidDrawing {
   void forget();
 
  private:
-  struct Beside {
+  // What goes on beside.
+  struct Task {
     std::shared_ptr<const Scene> solids;
     SolidView view;
-    Progress progress;
-    std::future<SolidRays> rays;
+    SolidRays rays;  // when it is over
   };
   SolidRays draw_now(const Scene& solids, const SolidView& view, Progress& progress);
-  void give_up();
 
-  std::unique_ptr<Beside> beside_;
   Image image_;
   std::vector<float> depth_;
+  Task task_;
+  Beside beside_;  // goes first
 };
 
 }  // namespace atomesh::gl

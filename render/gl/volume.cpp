@@ -61,6 +61,7 @@ struct Volume::Pace {
   explicit Pace(double milliseconds) : budget(milliseconds) {}
   bool limited() const { return std::isfinite(budget); }
   bool over() const { return ms_since(start) >= 0.875 * budget; }
+  double rest() const { return std::max(0.875 * budget - ms_since(start), 0.0); }
   std::size_t portion(double places_per_ms) const {
     if (!limited()) return cells_per_slab;
     if (!(places_per_ms > 0.0)) return first_portion;
@@ -148,6 +149,7 @@ void Volume::end_rays(std::span<const float> ray_ends) {
 }
 
 void Volume::set_scene(const Scene& scene) {
+  preparing_.give_up();
   scene_ = &scene;
   begun_.reset();
   view_.reset();
@@ -162,7 +164,7 @@ bool Volume::same_view(const Camera& camera, const PixelGrid& grid, const Parame
   return view_ && same(view_->camera, camera) && view_->grid == grid && view_->color_map == parameters.volume.color_map;
 }
 
-bool Volume::project(const Begun& begun, const Progress& progress) {
+bool Volume::project(Begun& begun, const Pace& pace, const Progress& progress) {
   last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
   last_.repair = {};
   resize(begun.grid.columns, begun.grid.rows);
@@ -179,7 +181,10 @@ bool Volume::project(const Begun& begun, const Progress& progress) {
       processor_cells_ = std::make_unique<ProcessorCells>(*scene_, by_faces, driver_.software);
     }
     cells_ = processor_cells_.get();
-    cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
+    begun.beside = pace.limited();
+    if (!begun.beside) {
+      cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
+    }
   }
   last_.project_ms = ms_since(start);
   return true;
@@ -203,12 +208,32 @@ bool Volume::project_on_card(const Begun& begun, const Progress& progress) {
   return true;
 }
 
-void Volume::order(const Begun& begun) {
-  if (view_) return;  // the one before
-  const Clock::time_point start = Clock::now();
-  cells_->order(begun.camera);
-  last_.order_ms = ms_since(start);
+bool Volume::order(const Begun& begun, const Pace& pace, const Progress& progress) {
+  if (view_) return true;  // the one before
+  if (begun.beside) {
+    progress.check();
+    if (!preparing_.started()) {
+      preparing_.start([cells = processor_cells_.get(), prepared = &prepared_, camera = begun.camera, grid = begun.grid,
+                        color_map = begun.parameters.volume.color_map](Progress& own) {
+        const Clock::time_point start = Clock::now();
+        cells->project(camera, grid, color_map, own);
+        own.check();
+        prepared->project_ms = ms_since(start);
+        cells->order(camera);
+        prepared->order_ms = ms_since(start) - prepared->project_ms;
+      });
+    }
+    if (!preparing_.over(pace.rest())) return false;
+    preparing_.take();
+    last_.project_ms = prepared_.project_ms;
+    last_.order_ms = prepared_.order_ms;
+  } else {
+    const Clock::time_point start = Clock::now();
+    cells_->order(begun.camera);
+    last_.order_ms = ms_since(start);
+  }
   view_ = View{begun.camera, begun.grid, begun.parameters.volume.color_map};
+  return true;
 }
 
 void Volume::resize(int columns, int rows) {
@@ -320,11 +345,13 @@ void Volume::step(Begun& begun, const Pace& pace, Progress& progress) {
   using Step = Begun::Step;
   switch (begun.step) {
     case Step::project:
-      begun.step = project(begun, progress) ? Step::order : Step::done;
+      // What was prepared for a picture that is given up comes to its end first.
+      if (pace.limited() && !preparing_.over(pace.rest())) break;
+      preparing_.give_up();
+      begun.step = project(begun, pace, progress) ? Step::order : Step::done;
       break;
     case Step::order:
-      order(begun);
-      begun.step = Step::clear;
+      if (order(begun, pace, progress)) begun.step = Step::clear;
       break;
     case Step::clear:
       clear(begun);
@@ -345,11 +372,17 @@ void Volume::step(Begun& begun, const Pace& pace, Progress& progress) {
 
 void Volume::begin(const Camera& camera, const Parameters& parameters, const PixelWindow& window,
                    const PixelLattice& lattice, std::span<const float> ray_ends) {
+  give_up();
   begun_.emplace();
   begun_->camera = camera;
   begun_->parameters = parameters;
   begun_->grid = pixel_grid(camera, window, lattice);
   begun_->ray_ends.assign(ray_ends.begin(), ray_ends.end());
+}
+
+void Volume::give_up() {
+  begun_.reset();
+  preparing_.cancel();
 }
 
 bool Volume::proceed(double milliseconds, RenderStats& stats, Progress& progress) {

@@ -10,6 +10,7 @@
 #include "core/image.h"
 #include "core/parameters.h"
 #include "core/progress.h"
+#include "render/gl/beside.h"
 #include "render/gl/card_cells.h"
 #include "render/gl/context.h"
 #include "render/gl/objects.h"
@@ -69,9 +70,12 @@ class Volume {
   void begin(const Camera& camera, const Parameters& parameters, const PixelWindow& window, const PixelLattice& lattice,
              std::span<const float> ray_ends = {});
   // Goes on for about so many milliseconds, at least by one step, and waits for OpenGL; whether the picture is finished
-  // (also where none is begun). Cells are drawn in portions that fit the time; projecting them, putting them in order
-  // and repairing are steps that are not divided. Until then texture() has the cells in front, or what it had before.
+  // (also where none is begun). Cells are drawn in portions that fit the time; where the processor projects them and
+  // puts them in order, a thread of its own does; repairing is a step that is not divided. Until then texture() has the
+  // cells in front, or what it had before.
   bool proceed(double milliseconds, RenderStats& stats, Progress& progress);
+  // Drops what was begun and not finished; leaves OpenGL alone.
+  void give_up();
 
   int largest_side() const { return largest_side_; }
   const VolumeStats& last() const { return last_; }
@@ -98,6 +102,7 @@ class Volume {
     std::vector<float> ray_ends;
     // what comes next
     enum class Step { project, order, clear, draw, repair, done } step = Step::project;
+    bool beside = false;         // a thread of its own projects cells and puts them in order
     std::size_t drawn = 0;       // places of the order
     double places_per_ms = 0.0;  // of the last portion; 0: none yet
     double drawing_ms = 0.0;
@@ -113,9 +118,10 @@ class Volume {
   bool same_view(const Camera& camera, const PixelGrid& grid, const Parameters& parameters) const;
   void step(Begun& begun, const Pace& pace, Progress& progress);
   // Whether there is anything to draw.
-  bool project(const Begun& begun, const Progress& progress);
+  bool project(Begun& begun, const Pace& pace, const Progress& progress);
   bool project_on_card(const Begun& begun, const Progress& progress);
-  void order(const Begun& begun);
+  // Whether it is done.
+  bool order(const Begun& begun, const Pace& pace, const Progress& progress);
   void clear(const Begun& begun);
   void draw_portion(Begun& begun, const Pace& pace, Progress& progress);
   void repair(const Progress& progress);
@@ -158,6 +164,11 @@ class Volume {
   int rows_ = 0;
   VolumeStats last_;
   std::optional<Begun> begun_;
+  struct Prepared {
+    double project_ms = 0.0;
+    double order_ms = 0.0;
+  } prepared_;
+  Beside preparing_;  // processor_cells_ and prepared_; goes first
 };
 
 }  // namespace atomesh::gl

@@ -210,7 +210,7 @@ void VolumePicture::set_scene(std::shared_ptr<const Scene> scene) {
 
 void VolumePicture::begin(const Camera& camera, const Parameters& parameters, const PictureDetail& detail) {
   check_picture(camera, parameters);
-  pipeline_->cancel_solids();
+  give_up();
   last_ = {};
   begun_ = Begun{.camera = camera, .parameters = parameters, .detail = detail};
 }
@@ -282,6 +282,7 @@ bool VolumePicture::proceed(double milliseconds, Progress& progress) {
 
 void VolumePicture::give_up() {
   begun_.reset();
+  pipeline_->volume().give_up();
   pipeline_->cancel_solids();
 }
 

@@ -53,9 +53,9 @@ class VolumePicture {
   void begin(const Camera& camera, const Parameters& parameters, const PictureDetail& detail = {});
   // Goes on for about so many milliseconds, at least by one step, and waits for OpenGL; whether the picture is finished
   // (also where none is begun). Only then, or part by part where it has several, is it put into the framebuffer that is
-  // bound, which has to be the same in all calls. Projecting cells, putting them in order and repairing are steps that
-  // are not divided, so that the first calls may take longer: 0.2 s for a million cells, once a view. Solids are drawn
-  // beside, by a thread of their own.
+  // bound, which has to be the same in all calls. Solids are drawn beside, by a thread
+  // of their own, and so are cells projected and put in order where the processor does that; to repair is a step that
+  // is not divided: 50 ms for a million cells.
   bool proceed(double milliseconds, Progress& progress = no_progress());
 
   // Drops what was begun and not finished; leaves OpenGL alone.
