@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>  // before Qt's
 #include <gtest/gtest.h>
 
+#include <QLabel>
 #include <QOpenGLWidget>
 #include <QSignalSpy>
 #include <QTest>
@@ -142,6 +143,53 @@ TEST_F(WindowVolume, IsWholeAgainAtRest) {
   EXPECT_EQ(rests.size(), 1);
   EXPECT_TRUE(painted.last()[1].toBool());
   EXPECT_LT(painted[0][0].toDouble(), painted.last()[0].toDouble());
+  EXPECT_LE(compare_images(screen(), rendered("havs")).max, 0.51 / 255.0);
+}
+
+// The whole picture is drawn in slices; what happens in between is heeded.
+TEST_F(WindowVolume, IsRefinedAndStartsOverWhenItChanges) {
+  draw_with(ViewOptions::Drawing::gpu);
+  choose(Mode::volume);
+  workspace().set("quality.supersampling", "4");  // takes long
+  ASSERT_TRUE(settled());
+  const auto& frame = child<QLabel>(*window, "frame");
+  EXPECT_FALSE(frame.text().contains("of 2")) << frame.text().toStdString();
+  QSignalSpy refining(&window->viewport(), &Viewport::refining);
+  const auto refined = [&](double fraction) {
+    return wait_for([&] { return !refining.isEmpty() && refining.last()[0].toDouble() > fraction; });
+  };
+  workspace().set("view.azimuth", "31");
+  if (!refined(0.1) && !gpu_of_this_machine().software) GTEST_SKIP() << "this card is too fast for it";
+  ASSERT_FALSE(refining.isEmpty());
+  EXPECT_TRUE(frame.text().contains(", picture 1 of 2 (")) << frame.text().toStdString();
+  EXPECT_FALSE(window->viewport().settled());
+  test::keep_screenshot(window->grab().toImage(), "volume-refining");
+  // Another view: little of it at first.
+  QSignalSpy painted(&card(), SIGNAL(painted(double, bool)));
+  workspace().set("view.azimuth", "32");
+  ASSERT_TRUE(wait_for([&] { return !painted.isEmpty(); }));
+  EXPECT_FALSE(painted[0][1].toBool());
+  refining.clear();
+  ASSERT_TRUE(refined(0.2));
+  // What lies over it is another, and nothing starts over.
+  const double reached = refining.last()[0].toDouble();
+  ViewOptions options = workspace().view_options();
+  options.scale_bar = true;
+  workspace().set_view_options(options);
+  painted.clear();
+  refining.clear();
+  ASSERT_TRUE(wait_for([&] { return !painted.isEmpty() && !refining.isEmpty(); }));
+  EXPECT_FALSE(painted[0][1].toBool());
+  EXPECT_GE(refining[0][0].toDouble(), reached);
+  options.scale_bar = false;
+  workspace().set_view_options(options);
+  // Away and back: it goes on with the same picture.
+  choose(Mode::xray);
+  ASSERT_TRUE(settled());
+  choose(Mode::volume);
+  ASSERT_TRUE(settled());
+  EXPECT_TRUE(painted.last()[1].toBool());
+  EXPECT_FALSE(frame.text().contains("of 2")) << frame.text().toStdString();
   EXPECT_LE(compare_images(screen(), rendered("havs")).max, 0.51 / 255.0);
 }
 
