@@ -203,7 +203,7 @@ void CardCells::order_clusters(const Camera& camera) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void CardCells::order(const Camera& camera) {
+void CardCells::order(const Camera& camera, Progress& /*progress*/) {
   order_clusters(camera);
   order_->sort(key_scale(camera, scene_), candidates_, places_);
   slab_numbers_.assign(slabs_.size(), ceil_quotient(places_, cells_per_slab));  // none

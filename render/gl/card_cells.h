@@ -39,7 +39,7 @@ class CardCells final : public PreparedCells {
 
   void project(const Camera& camera, const PixelGrid& grid, const ColorMap& color_map,
                const Progress& progress) override;
-  void order(const Camera& camera) override;
+  void order(const Camera& camera, Progress& progress) override;
   const ScreenView& view() const override { return view_; }
   // Those of the cells that are not transparent.
   std::size_t places() const override { return places_; }

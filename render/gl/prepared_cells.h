@@ -35,7 +35,7 @@ class PreparedCells {
   // UnavailableError (no memory).
   virtual void project(const Camera& camera, const PixelGrid& grid, const ColorMap& color_map,
                        const Progress& progress) = 0;
-  virtual void order(const Camera& camera) = 0;
+  virtual void order(const Camera& camera, Progress& progress) = 0;
   virtual const ScreenView& view() const = 0;
 
   // Places of the order; there may be fewer cells.

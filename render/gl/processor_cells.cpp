@@ -39,8 +39,8 @@ void ProcessorCells::project(const Camera& camera, const PixelGrid& grid, const 
   mesh_ = std::make_unique<ScreenMesh>(scene_, camera, grid, cell_projection::MapIntervals(color_map), progress);
 }
 
-void ProcessorCells::order(const Camera& camera) {
-  if (!order_) order_ = std::make_unique<CellOrder>(scene_, by_faces_);
+void ProcessorCells::order(const Camera& camera, Progress& progress) {
+  if (!order_) order_ = std::make_unique<CellOrder>(scene_, by_faces_, progress);
   std::vector<Index> order;
   CellOrderStats order_stats;
   const std::vector<Index> unseen =

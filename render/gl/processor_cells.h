@@ -22,7 +22,7 @@ class ProcessorCells final : public PreparedCells {
 
   void project(const Camera& camera, const PixelGrid& grid, const ColorMap& color_map,
                const Progress& progress) override;
-  void order(const Camera& camera) override;
+  void order(const Camera& camera, Progress& progress) override;
   const ScreenView& view() const override { return mesh_->view(); }
   std::size_t places() const override { return parts_.size(); }
   bool make_slab(std::size_t begin) override;

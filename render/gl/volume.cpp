@@ -208,7 +208,7 @@ bool Volume::project_on_card(const Begun& begun, const Progress& progress) {
   return true;
 }
 
-bool Volume::order(const Begun& begun, const Pace& pace, const Progress& progress) {
+bool Volume::order(const Begun& begun, const Pace& pace, Progress& progress) {
   if (view_) return true;  // the one before
   if (begun.beside) {
     progress.check();
@@ -219,7 +219,7 @@ bool Volume::order(const Begun& begun, const Pace& pace, const Progress& progres
         cells->project(camera, grid, color_map, own);
         own.check();
         prepared->project_ms = ms_since(start);
-        cells->order(camera);
+        cells->order(camera, own);
         prepared->order_ms = ms_since(start) - prepared->project_ms;
       });
     }
@@ -229,7 +229,8 @@ bool Volume::order(const Begun& begun, const Pace& pace, const Progress& progres
     last_.order_ms = prepared_.order_ms;
   } else {
     const Clock::time_point start = Clock::now();
-    cells_->order(begun.camera);
+    Progress unheard(progress, 0.0, 0.0);  // what is reported are the cells drawn
+    cells_->order(begun.camera, unheard);
     last_.order_ms = ms_since(start);
   }
   view_ = View{begun.camera, begun.grid, begun.parameters.volume.color_map};

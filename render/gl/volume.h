@@ -121,7 +121,7 @@ class Volume {
   bool project(Begun& begun, const Pace& pace, const Progress& progress);
   bool project_on_card(const Begun& begun, const Progress& progress);
   // Whether it is done.
-  bool order(const Begun& begun, const Pace& pace, const Progress& progress);
+  bool order(const Begun& begun, const Pace& pace, Progress& progress);
   void clear(const Begun& begun);
   void draw_portion(Begun& begun, const Pace& pace, Progress& progress);
   void repair(const Progress& progress);

@@ -104,9 +104,10 @@ TEST_F(WindowAnswers, WhileTheCardDrawsAVolume) {
     ASSERT_TRUE(settled());
     resting.stop();
     print(std::string("at rest, solids: ") + solid, resting);
-    // In ten runs on two cores 28 ms; where pixels have to be repaired, which is one step, 68 ms.
+    // In ten runs on two cores 28 ms; where pixels have to be repaired, which is one step, 68 ms, and 145 ms with
+    // four processes waiting for the cores.
     EXPECT_LT(resting.quantile(0.95), 50.0 * slowdown) << solid;
-    EXPECT_LT(resting.slowest(), 150.0 * slowdown) << solid;
+    EXPECT_LT(resting.slowest(), 300.0 * slowdown) << solid;
   }
 }
 

@@ -106,7 +106,7 @@ class CardCellsTest : public testing::Test {
     const PixelGrid grid = pixel_grid(subject.camera, whole_picture(subject.camera));
     ASSERT_TRUE(cells.fits(subject.camera, grid));
     cells.project(subject.camera, grid, subject.parameters.volume.color_map, no_progress());
-    cells.order(subject.camera);
+    cells.order(subject.camera, no_progress());
   }
   ScreenMesh mesh_of(const Subject& subject) {
     return ScreenMesh(subject.scene, subject.camera, pixel_grid(subject.camera, whole_picture(subject.camera)),
