@@ -49,9 +49,8 @@ void ProcessorCells::order(const Camera& camera, Progress& progress) {
   parts_ = mesh_->parts(order);
   cells_ = order.size();
   const std::size_t slabs = (parts_.size() + cells_per_slab - 1) / cells_per_slab;
-  slabs_.resize(keep(parts_.size()) ? slabs : 1);
   triangles_.assign(slabs, 0);
-  slab_numbers_.assign(slabs_.size(), slabs);  // none
+  slab_numbers_.assign(keep(parts_.size()) ? slabs : 1, slabs);  // none
 }
 
 std::size_t ProcessorCells::triangles() const {
@@ -60,6 +59,7 @@ std::size_t ProcessorCells::triangles() const {
 
 bool ProcessorCells::make_slab(std::size_t begin) {
   const std::size_t n = begin / cells_per_slab;
+  slabs_.resize(slab_numbers_.size());
   Slab& slab = slab_at(begin);
   std::size_t& number = slab_numbers_[static_cast<std::size_t>(&slab - slabs_.data())];
   if (number == n) return false;

@@ -20,6 +20,7 @@ class ProcessorCells final : public PreparedCells {
   ProcessorCells(const Scene& scene, bool by_faces, bool software)
       : scene_(scene), by_faces_(by_faces), software_(software) {}
 
+  // These two leave OpenGL alone: another thread may call them.
   void project(const Camera& camera, const PixelGrid& grid, const ColorMap& color_map,
                const Progress& progress) override;
   void order(const Camera& camera, Progress& progress) override;

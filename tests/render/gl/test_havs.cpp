@@ -259,6 +259,29 @@ TEST_F(DebugVolume, SlicesOfTimeMakeTheSamePicture) {
   }
 }
 
+// From three slabs of cells to one, prepared by a thread that has no OpenGL.
+TEST_F(DebugVolume, SlicesOfTimeMayNeedLessMemoryThanBefore) {
+  Subject subject = subject_of(Projection::perspective, 60, 50);
+  subject.material = box_material(30, 30, 26, 2.0, shaking(0.35, 1));
+  add_defects(subject.material, 1);
+  subject.parameters.volume.color_map.entries[0].color.a = 0.1F;
+  subject.scene = make_scene(subject.material, subject.parameters);
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, 400, 300);
+  volume.set_scene(subject.scene);
+  draw(subject);
+  EXPECT_GT(volume.last().cells, 2U * 65536U);
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, 24, 18);
+  RenderStats stats;
+  volume.begin(subject.camera, subject.parameters, whole_picture(subject.camera), {});
+  while (!volume.proceed(5.0, stats, no_progress())) {
+  }
+  EXPECT_LT(volume.last().cells, 65536U);
+  const Image slices = volume.read();
+  volume.set_scene(subject.scene);
+  draw(subject);
+  EXPECT_EQ(slices.pixels, volume.read().pixels);
+}
+
 TEST_F(DebugVolume, LeavesOpenGlAsItWas) {
   const Subject subject = subject_of(Projection::perspective, 30, 30);
   glViewport(3, 4, 5, 6);
