@@ -164,7 +164,7 @@ TEST(CellClusters, ComeInTheOrderOfTheirFaces) {
           const Camera camera = make_camera(parameters, scene.bounds, 100, 100);
           for (const ColorMap& map : {opaque, partly}) {
             cells.project(camera, pixel_grid(camera, whole_picture(camera)), map, no_progress());
-            cells.order(camera);
+            cells.order(camera, no_progress());
             glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
             std::vector<Index> order;
             for (const KeyedCell& keyed : cells.keyed().read<KeyedCell>(cells.places())) order.push_back(keyed.cell);
