@@ -44,7 +44,7 @@ class CardCells final : public PreparedCells {
   // Those of the cells that are not transparent.
   std::size_t places() const override { return places_; }
   bool make_slab(std::size_t begin) override;
-  std::size_t draw(std::size_t begin, std::size_t most) override;
+  std::size_t draw(std::size_t begin, std::size_t most, const UseProgram& use) override;
   void draw_marked(const MarkedTiles& tiles, const Progress& progress) override;
   std::size_t cells() const override { return read_totals().cells; }
   std::size_t triangles() const override { return read_totals().triangles; }

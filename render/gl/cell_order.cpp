@@ -1,6 +1,7 @@
 #include "render/gl/cell_order.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -168,7 +169,45 @@ CellOrder::CellOrder(const Scene& scene, bool by_faces, Progress& progress)
     throw;
   } catch (const Error&) {
     neighbours_.clear();
+    return;
   }
+  find_outside(progress);
+}
+
+void CellOrder::find_outside(Progress& progress) {
+  std::vector<std::vector<OutsideFace>> found((neighbours_.size() + cells_per_range - 1) / cells_per_range);
+  std::atomic<bool> turned{false};
+  parallel_for(neighbours_.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tetrahedron& t = scene_.tetrahedra[i];
+      const Vec3 origin(scene_.vertices[t[0]]);
+      const auto arm = [&](int k) { return Vec3(scene_.vertices[t[k]]) - origin; };
+      if (glm::dot(glm::cross(arm(1), arm(2)), arm(3)) < 0.0) turned = true;
+      for (int face = 0; face < 4; ++face) {
+        if (neighbours_[i][static_cast<std::size_t>(face)] != no_index) continue;
+        found[begin / cells_per_range].push_back({static_cast<Index>(i), face});
+      }
+    }
+  });
+  if (turned) return;
+  for (const std::vector<OutsideFace>& faces : found) outside_.insert(outside_.end(), faces.begin(), faces.end());
+}
+
+// After order_by_faces(), when rank_ has each cell's place.
+void CellOrder::order_outside(const Camera& camera) {
+  const FaceSides sides(camera, scene_);
+  keyed_.resize(outside_.size());
+  parallel_for(outside_.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [cell, face] = outside_[i];
+      const bool front = (sides.fronts_of(cell) >> face & 1U) != 0;
+      keyed_[i] = {2U * rank_[cell] + (front ? 0U : 1U), static_cast<Index>(i)};
+    }
+  });
+  sort_by_key(keyed_, scratch_);
+  outside_in_order_.resize(outside_.size());
+  std::ranges::transform(keyed_, outside_in_order_.begin(), [&](const KeyedCell& k) { return outside_[k.cell]; });
 }
 
 void CellOrder::sort(const Camera& camera, std::span<const Index> cells, std::span<const Index> unseen,
@@ -221,9 +260,12 @@ void CellOrder::order_by_faces(const Camera& camera, std::span<const Index> cell
   look(cells, waiting);
   look(unseen, waiting | hidden);
   std::size_t drawn = 0;
+  Index rank = 0;
+  const std::uint64_t circles_before = stats.circles;
   const auto draw = [&](Index cell) {
     if ((state_[cell] & hidden) == 0) order[drawn++] = cell;
     state_[cell] = 0;
+    rank_[cell] = rank++;
   };
   for (const KeyedCell& next : keyed_) {
     const unsigned state = state_[next.cell];
@@ -248,6 +290,9 @@ void CellOrder::order_by_faces(const Camera& camera, std::span<const Index> cell
       if ((state_[before] & (open | waiting)) == waiting) path_.push_back(before);
     }
   }
+  outside_in_order_.clear();
+  const bool all = rank == neighbours_.size();
+  if (all && stats.circles == circles_before && !outside_.empty()) order_outside(camera);
   stats.faces_ms += ms_since(start);
 }
 

@@ -47,6 +47,12 @@ struct KeyScale {
 KeyScale key_scale(const Camera& camera, const Scene& scene);
 std::uint32_t key_of(const KeyScale& scale, const OrderPoint& point);
 
+// A face that one cell alone has.
+struct OutsideFace {
+  Index cell;
+  int face;  // opposite its corner of that number
+};
+
 class CellOrder {
  public:
   // Keeps a reference to the scene, 16 bytes a tetrahedron and, `by_faces`, 16 more (while made 24). A mesh in which
@@ -62,9 +68,17 @@ class CellOrder {
   std::span<const OrderPoint> points() const { return points_; }
   bool by_faces() const { return !neighbours_.empty(); }
 
+  // Whether in the order last found all cells that share a face stand right, and none is turned inside out: a ray then
+  // may meet cells in a wrong order only where it leaves the mesh and enters it again. All of the mesh's outside faces
+  // front to back, as far as that order is right: each where its cell stands, before it where the ray enters, behind it
+  // where it leaves. Empty where that is not so.
+  std::span<const OutsideFace> outside() const { return outside_in_order_; }
+
  private:
   void order_by_faces(const Camera& camera, std::span<const Index> cells, std::span<const Index> unseen,
                       std::vector<Index>& order, CellOrderStats& stats);
+  void find_outside(Progress& progress);
+  void order_outside(const Camera& camera);
 
   const Scene& scene_;
   std::vector<OrderPoint> points_;
@@ -76,6 +90,8 @@ class CellOrder {
   std::vector<Index> rank_;  // by keys; no_index where it is not looked at
   std::vector<std::uint8_t> state_;
   std::vector<Index> path_;
+  std::vector<OutsideFace> outside_;  // none where a cell is turned inside out
+  std::vector<OutsideFace> outside_in_order_;
 };
 
 }  // namespace atomesh::gl

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 
 #include "core/camera.h"
 #include "core/color_map.h"
@@ -41,20 +42,30 @@ class PreparedCells {
   // Places of the order; there may be fewer cells.
   virtual std::size_t places() const = 0;
   // The slab with the place `begin`: its triangles are made; false where they are there already. Then draws it, or of
-  // it some places from `begin` on; the program is used, and a vertex array bound whose attributes 0 and 1 are the
-  // cells'.
+  // it some places from `begin` on; a vertex array is bound whose attributes 0 to 2 are the cells', and `use` makes a
+  // program current: cells.vert's, or, for cells whose light is a sum of ramps (map_ramps.h), ramp_cells.vert's.
   virtual bool make_slab(std::size_t begin) = 0;
   // Returns how many: about `most`, at least one, not beyond the slab.
-  virtual std::size_t draw(std::size_t begin, std::size_t most) = 0;
+  using UseProgram = std::function<void(bool ramps)>;
+  virtual std::size_t draw(std::size_t begin, std::size_t most, const UseProgram& use) = 0;
   static std::size_t slab_end(std::size_t begin, std::size_t places) {
     return std::min(begin - begin % cells_per_slab + cells_per_slab, places);
   }
-  // Draws at least the cells that lie where `tiles` are marked.
+  // Before make_slab(): whether cells are drawn as sums of ramps of this map where they suit it. Only cells that the
+  // processor prepares are.
+  virtual void use_ramps(const ColorMap& /*color_map*/, double /*alpha_length*/) {}
+  virtual void use_no_ramps() {}
+  // Whether draw_outside() shows all there is to see of a wrong order: faces of which each has to lie behind the one
+  // before, as far as the order is right. A vertex array is bound whose attribute 0 is theirs, for cells.vert.
+  virtual bool outside_shows_order() const { return false; }
+  virtual void draw_outside() {}
+  // Draws at least the cells that lie where `tiles` are marked, by the program in use: cells.vert's.
   virtual void draw_marked(const MarkedTiles& tiles, const Progress& progress) = 0;
 
   // Of the view, once all of it was drawn; waits for OpenGL.
   virtual std::size_t cells() const = 0;
   virtual std::size_t triangles() const = 0;
+  virtual std::size_t ramp_triangles() const { return 0; }
 
  protected:
   // FaceVertex, as the attributes of the vertex array that is bound.

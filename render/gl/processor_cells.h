@@ -4,11 +4,13 @@
 
 #include <epoxy/gl.h>
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "render/gl/cell_order.h"
+#include "render/gl/map_ramps.h"
 #include "render/gl/objects.h"
 #include "render/gl/prepared_cells.h"
 
@@ -27,24 +29,40 @@ class ProcessorCells final : public PreparedCells {
   const ScreenView& view() const override { return mesh_->view(); }
   std::size_t places() const override { return parts_.size(); }
   bool make_slab(std::size_t begin) override;
-  std::size_t draw(std::size_t begin, std::size_t most) override;
+  std::size_t draw(std::size_t begin, std::size_t most, const UseProgram& use) override;
+  void use_ramps(const ColorMap& color_map, double alpha_length) override;
+  void use_no_ramps() override;
+  bool outside_shows_order() const override { return !outside_.empty(); }
+  void draw_outside() override;
   void draw_marked(const MarkedTiles& tiles, const Progress& progress) override;
   std::size_t cells() const override { return cells_; }
   std::size_t triangles() const override;
+  std::size_t ramp_triangles() const override;
 
  private:
+  // Vertices of triangles that are drawn by the same program.
+  struct Run {
+    GLint first;
+    GLsizei count;
+    bool ramps;
+  };
   // Front faces of consecutive cells of the order, on the card.
   struct Slab {
     Buffer vertices;
+    Buffer rows;  // of each vertex's triangle: of MapRamps
+    bool with_rows = false;
     std::size_t cells = 0;
-    // vertices of each thread's share of the cells
-    std::vector<GLint> first;
-    std::vector<GLsizei> count;
+    std::vector<std::vector<Run>> runs;  // of each thread's share of the cells
   };
+  // A thread's share of a slab, while it is filled.
+  class Share;
 
-  Slab& slab_at(std::size_t begin) { return slabs_[keep(parts_.size()) ? begin / cells_per_slab : 0]; }
-  void fill(Slab& slab, std::span<const Index> parts) const;
-  void draw_cells(const Slab& slab, std::size_t begin, std::size_t end) const;
+  // Those of software may have twice the vertices.
+  bool keep_slabs() const { return keep(parts_.size(), software_ ? kept_bytes / 2 : kept_bytes); }
+  Slab& slab_at(std::size_t begin) { return slabs_[keep_slabs() ? begin / cells_per_slab : 0]; }
+  void find_outside();
+  void fill(Slab& slab, std::span<const Index> parts, const MapRamps* ramps) const;
+  void draw_cells(const Slab& slab, std::size_t begin, std::size_t end, const UseProgram& use) const;
 
   const Scene& scene_;
   bool by_faces_;
@@ -56,7 +74,17 @@ class ProcessorCells final : public PreparedCells {
   std::vector<Slab> slabs_;                // all of the view's, or the one that is drawn
   std::vector<std::size_t> slab_numbers_;  // which of the view's each of them holds
   std::vector<std::size_t> triangles_;     // of each of the view's slabs
-  Slab marked_;                            // of a repair
+  std::vector<std::size_t> ramp_triangles_;
+  Slab marked_;                 // of a repair
+  std::vector<Vec4f> outside_;  // column, row and w of ScreenVertex; nothing
+  bool outside_sent_ = false;
+  Buffer outside_buffer_;
+  std::unique_ptr<MapRamps> ramps_;  // none: cells are integrated as the program does
+  bool ramps_suit_ = false;          // enough of the cells
+  ColorMap ramps_map_;
+  double ramps_alpha_length_ = 0.0;
+  Buffer ramp_rows_;
+  Handle<detail::destroy_texture> ramp_rows_texture_;
 };
 
 }  // namespace atomesh::gl

@@ -111,6 +111,10 @@ class ScreenMesh {
   // The cells, put into some order, as what is drawn: cells that were clipped are replaced by their pieces, of one cell
   // from the nearest on, which have numbers from Scene::tetrahedra.size() on.
   std::vector<Index> parts(std::span<const Index> order) const;
+  // Of a corner: its place is none, for it is nearer than `near` or beyond the guard.
+  static bool is_clipped(const ScreenVertex& vertex) { return vertex.column == clipped; }
+  // Parts from here on are pieces.
+  std::size_t cells_of_scene() const { return scene_.tetrahedra.size(); }
   // Corners of a part, oriented like those of the cell.
   std::array<ScreenVertex, 4> corners(Index part) const {
     if (part >= scene_.tetrahedra.size()) return pieces_[part - scene_.tetrahedra.size()];

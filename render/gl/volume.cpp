@@ -77,7 +77,7 @@ struct Volume::Pace {
 
 Volume::Volume() : driver_(current_driver()) {
   require_sufficient_driver();
-  blend_ = make_programs("blend.frag", {});
+  blend_ = make_programs("cells.vert", "blend.frag", {});
   std::array<GLint, 2> viewport{};
   glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
   viewport_side_ = std::min({viewport[0], viewport[1], 2 * guard_pixels});
@@ -88,14 +88,20 @@ Volume::Volume() : driver_(current_driver()) {
   framebuffer_ = make_framebuffer();
 }
 
-Volume::Programs Volume::make_programs(std::string_view fragment_file, std::vector<std::string> defines) const {
+Volume::Programs Volume::make_programs(std::string_view vertex_file, std::string_view fragment_file,
+                                       std::vector<std::string> defines) const {
   Programs programs;
   if (with_table_) defines.emplace_back("TABLE");
   if (with_ray_ends_) defines.emplace_back("RAY_ENDS");
-  programs.parallel = Program::draw("cells.vert", fragment_file, defines);
+  programs.parallel = Program::draw(vertex_file, fragment_file, defines);
   defines.emplace_back("PERSPECTIVE");
-  programs.perspective = Program::draw("cells.vert", fragment_file, defines);
+  programs.perspective = Program::draw(vertex_file, fragment_file, defines);
   return programs;
+}
+
+// A card has its table.
+bool Volume::by_ramps(const Parameters& parameters) const {
+  return driver_.software && parameters.havs.integration == HavsIntegration::automatic;
 }
 
 bool Volume::make_table(const Parameters& parameters) {
@@ -110,7 +116,8 @@ void Volume::choose_programs(bool table, bool rays_end) {
   if (with_table_ == table && with_ray_ends_ == rays_end) return;
   with_table_ = table;
   with_ray_ends_ = rays_end;
-  blend_ = make_programs("blend.frag", {});
+  blend_ramps_ = {};
+  blend_ = make_programs("cells.vert", "blend.frag", {});
   repair_.reset();
 }
 
@@ -125,7 +132,7 @@ void Volume::make_repair(const HavsParameters& parameters) {
   settings.stencil_bits = disorder_bit;
   if (repair_ && repair_->settings() == settings) return;
   repair_ = std::make_unique<OrderRepair>(settings);
-  gather_ = make_programs(repair_->fragment_shader(), repair_->defines());
+  gather_ = make_programs("cells.vert", repair_->fragment_shader(), repair_->defines());
 }
 
 // Texture of unit 9: w (ScreenVertex) of each pixel's ray's end.
@@ -271,9 +278,9 @@ void Volume::use(const Programs& programs) const {
   glUniform4f(program.uniform("direction"), static_cast<GLfloat>(grid.x - 0.5 * grid.dx),
               static_cast<GLfloat>(grid.y + 0.5 * grid.dy), static_cast<GLfloat>(grid.dx),
               static_cast<GLfloat>(-grid.dy));
+  glUniform2f(program.uniform("middle"), static_cast<GLfloat>(grid.columns / 2), static_cast<GLfloat>(grid.rows / 2));
   table_.bind();
   if (with_ray_ends_) ray_ends_.bind(9);
-  glBindVertexArray(vertex_array_.name());
 }
 
 void Volume::bind_picture() const {
@@ -284,20 +291,25 @@ void Volume::bind_picture() const {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
   glStencilMask(0xFF);
+  glBindVertexArray(vertex_array_.name());
 }
 
-// Front to back: what comes lies behind what there is. The fixed functions find the pixels whose cells come in another
-// order: where one begins before the last one it is not drawn, but leaves its mark.
-void Volume::set_blending(bool check_order) {
+// Front to back: what comes lies behind what there is.
+void Volume::set_blending() {
   glEnable(GL_BLEND);
   glBlendEquation(GL_FUNC_ADD);
   glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
   glDisable(GL_CULL_FACE);
+}
+
+// The fixed functions find the pixels whose cells come in another order: where one begins before the last one it is not
+// drawn, but leaves its mark.
+void Volume::set_order_check(bool on) {
   // Steps of 1/4096 of the sample: where cells follow one another, rounding turns no two round.
   glDepthRangef(0.0F, 1.0F / 4096.0F);
   glEnable(GL_DEPTH_CLAMP);  // what rounding puts before the first depth or behind the last
-  (check_order ? glEnable : glDisable)(GL_DEPTH_TEST);
-  (check_order ? glEnable : glDisable)(GL_STENCIL_TEST);
+  (on ? glEnable : glDisable)(GL_DEPTH_TEST);
+  (on ? glEnable : glDisable)(GL_STENCIL_TEST);
   glDepthFunc(GL_GEQUAL);
   glStencilFunc(GL_ALWAYS, disorder_bit, disorder_bit);
   glStencilOp(GL_KEEP, GL_REPLACE, GL_KEEP);
@@ -305,6 +317,12 @@ void Volume::set_blending(bool check_order) {
 
 void Volume::clear(const Begun& begun) {
   choose_programs(make_table(begun.parameters), !begun.ray_ends.empty());
+  if (by_ramps(begun.parameters)) {
+    if (!blend_ramps_.perspective) blend_ramps_ = make_programs("ramp_cells.vert", "blend.frag", {"RAMPS"});
+    cells_->use_ramps(begun.parameters.volume.color_map, begun.parameters.volume.alpha_length);
+  } else {
+    cells_->use_no_ramps();
+  }
   end_rays(begun.ray_ends);
   if (begun.parameters.havs.order != HavsOrder::none) make_repair(begun.parameters.havs);
   bind_picture();
@@ -320,15 +338,29 @@ void Volume::draw_portion(Begun& begun, const Pace& pace, Progress& progress) {
   if (cells_->make_slab(begun.drawn)) last_.faces_ms += ms_since(start);
   const Clock::time_point drawing = Clock::now();
   bind_picture();
-  set_blending(begun.parameters.havs.order != HavsOrder::none);
-  use(blend_);
-  const std::size_t count = cells_->draw(begun.drawn, pace.portion(begun.places_per_ms));
+  set_blending();
+  // Software takes a fifth longer where it has to look at depths.
+  set_order_check(begun.parameters.havs.order != HavsOrder::none && !cells_->outside_shows_order());
+  const std::size_t count = cells_->draw(begun.drawn, pace.portion(begun.places_per_ms),
+                                         [this](bool ramps) { use(ramps ? blend_ramps_ : blend_); });
   begun.drawn += count;
   if (pace.limited()) {
     glFinish();
     begun.places_per_ms = static_cast<double>(count) / std::max(ms_since(drawing), 1e-3);
   }
   progress.update(static_cast<double>(begun.drawn) / static_cast<double>(places));
+}
+
+// Marks the pixels whose cells came in a wrong order, where cells did not do so themselves.
+void Volume::check_outside() {
+  if (!cells_->outside_shows_order()) return;
+  if (!outside_.perspective) outside_ = make_programs("cells.vert", "nothing.frag", {});
+  bind_picture();
+  glDisable(GL_CULL_FACE);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  set_order_check(true);
+  use(outside_);
+  cells_->draw_outside();
 }
 
 void Volume::repair(const Progress& progress) {
@@ -338,7 +370,7 @@ void Volume::repair(const Progress& progress) {
   };
   glFinish();  // what has been drawn is not the repair's time; it has to look at it anyway
   bind_picture();
-  set_blending(true);  // depths as before
+  set_order_check(true);  // depths as before
   repair_->repair(framebuffer_.name(), columns_, rows_, gather, last_.repair);
 }
 
@@ -360,7 +392,11 @@ void Volume::step(Begun& begun, const Pace& pace, Progress& progress) {
       break;
     case Step::draw:
       if (begun.drawn < cells_->places()) draw_portion(begun, pace, progress);
-      if (begun.drawn == cells_->places()) begun.step = Step::repair;
+      if (begun.drawn == cells_->places()) begun.step = Step::check;
+      break;
+    case Step::check:
+      if (begun.parameters.havs.order != HavsOrder::none) check_outside();
+      begun.step = Step::repair;
       break;
     case Step::repair:
       if (begun.parameters.havs.order != HavsOrder::none) repair(progress);
@@ -413,6 +449,7 @@ bool Volume::proceed(double milliseconds, RenderStats& stats, Progress& progress
   if (view_) {
     last_.cells = cells_->cells();
     last_.triangles = cells_->triangles();
+    last_.ramp_triangles = cells_->ramp_triangles();
   }
   last_.draw_ms = begun.drawing_ms - last_.faces_ms - last_.repair.ms;
   progress.update(1.0);

@@ -25,9 +25,10 @@ namespace atomesh::gl {
 
 // What the last picture was made of.
 struct VolumeStats {
-  std::size_t cells = 0;      // drawn: not transparent, not beside the picture
-  std::size_t triangles = 0;  // front faces of theirs
-  double project_ms = 0.0;    // vertices, which cells
+  std::size_t cells = 0;           // drawn: not transparent, not beside the picture
+  std::size_t triangles = 0;       // front faces of theirs
+  std::size_t ramp_triangles = 0;  // of these, what is drawn as a sum of ramps (map_ramps.h)
+  double project_ms = 0.0;         // vertices, which cells
   double order_ms = 0.0;
   double faces_ms = 0.0;  // front faces, handed to OpenGL
   double draw_ms = 0.0;   // OpenGL
@@ -101,7 +102,7 @@ class Volume {
     PixelGrid grid;
     std::vector<float> ray_ends;
     // what comes next
-    enum class Step { project, order, clear, draw, repair, done } step = Step::project;
+    enum class Step { project, order, clear, draw, check, repair, done } step = Step::project;
     bool beside = false;         // a thread of its own projects cells and puts them in order
     std::size_t drawn = 0;       // places of the order
     double places_per_ms = 0.0;  // of the last portion; 0: none yet
@@ -124,8 +125,11 @@ class Volume {
   bool order(const Begun& begun, const Pace& pace, Progress& progress);
   void clear(const Begun& begun);
   void draw_portion(Begun& begun, const Pace& pace, Progress& progress);
+  void check_outside();
   void repair(const Progress& progress);
-  Programs make_programs(std::string_view fragment_file, std::vector<std::string> defines) const;
+  Programs make_programs(std::string_view vertex_file, std::string_view fragment_file,
+                         std::vector<std::string> defines) const;
+  bool by_ramps(const Parameters& parameters) const;
   // Whether the table is to be used, which is then ready.
   bool make_table(const Parameters& parameters);
   void choose_programs(bool table, bool rays_end);
@@ -133,7 +137,8 @@ class Volume {
   void end_rays(std::span<const float> ray_ends);
   void resize(int columns, int rows);
   void bind_picture() const;
-  static void set_blending(bool check_order);
+  static void set_blending();
+  static void set_order_check(bool on);
   void use(const Programs& programs) const;
 
   Driver driver_;
@@ -154,6 +159,8 @@ class Volume {
   bool with_table_ = false;
   bool with_ray_ends_ = false;
   Programs blend_;
+  Programs blend_ramps_;
+  Programs outside_;  // depths alone
   std::unique_ptr<OrderRepair> repair_;
   Programs gather_;  // of repair_
   VertexArray vertex_array_;

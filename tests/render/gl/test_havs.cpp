@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "core/error.h"
 #include "render/gl/context.h"
@@ -80,6 +81,90 @@ TEST_P(Havs, IntegratesByTheTableToItsError) {
   const ImageDifference difference = compare_images(table.image, exact.image);
   EXPECT_GT(difference.max, 1e-6);  // it is the table
   EXPECT_LE(difference.max, subject.parameters.havs.table_error);
+}
+
+// Software's default. Jumps, a constant scalar, pieces that nothing is seen of, few and many pieces a cell.
+TEST_P(Havs, IntegratesBySumsOfRampsNearlyExactly) {
+  gl::HeadlessContext context;
+  const gl::HeadlessContext::Current current(context);
+  if (!gl::current_driver().software) GTEST_SKIP() << "a graphics card integrates by its table";
+  Subject subject = subject_of(GetParam(), 160, 120);
+  subject.material = box_material(9, 9, 9, 2.0, shaking(0.3, 5));
+  add_defects(subject.material, 3);
+  subject.scene = make_scene(subject.material, subject.parameters);
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, 160, 120);
+  subject.parameters.volume.alpha_length = 2.0 / subject.scene.bounds.diagonal();
+  const std::vector<ColorMap> maps{subject.parameters.volume.color_map,
+                                   preset_color_map("viridis"),
+                                   {{{0.0, {0.1F, 0.2F, 0.8F, 0.3F}},
+                                     {0.45, {0.1F, 0.9F, 0.8F, 0.3F}},
+                                     {0.45, {0.9F, 0.2F, 0.1F, 1.0F}},
+                                     {0.6, {0.9F, 0.2F, 0.1F, 0.0F}},
+                                     {0.9, {0.9F, 0.2F, 0.1F, 0.0F}},
+                                     {1.0, {0.0F, 1.0F, 0.0F, 1.0F}}}}};
+  for (const bool constant : {false, true}) {
+    if (constant) std::fill(subject.scene.scalars.begin(), subject.scene.scalars.end(), 0.3F);
+    for (const ColorMap& map : maps) {
+      SCOPED_TRACE(std::to_string(&map - maps.data()) + (constant ? ", constant" : ""));
+      subject.parameters.volume.color_map = map;
+      gl::Volume volume;
+      volume.set_scene(subject.scene);
+      const auto drawn = [&](HavsIntegration integration) {
+        subject.parameters.havs.integration = integration;
+        RenderStats stats;
+        volume.draw(subject.camera, subject.parameters, whole_picture(subject.camera), {}, stats, no_progress());
+        return volume.read();
+      };
+      const Image exact = drawn(HavsIntegration::exact);
+      EXPECT_EQ(volume.last().ramp_triangles, 0U);
+      const Image ramps = drawn(HavsIntegration::automatic);
+      EXPECT_GT(2 * volume.last().ramp_triangles, volume.last().triangles);
+      const ImageDifference difference = compare_images(ramps, exact);
+      EXPECT_LE(difference.max, 0.5 / 255.0);
+      EXPECT_GT(difference.max, 0.0);  // it is something else
+      EXPECT_GE(difference.psnr, 70.0);
+      const Image again = drawn(HavsIntegration::exact);
+      EXPECT_EQ(compare_images(again, exact).max, 0.0);
+    }
+  }
+  // Just where the map jumps; what is integrated exactly is to one side or the other there, by rounding.
+  std::fill(subject.scene.scalars.begin(), subject.scene.scalars.end(), 0.45F);
+  subject.parameters.volume.color_map = maps[2];
+  subject.parameters.havs.integration = HavsIntegration::automatic;
+  const Drawn ramps = draw(find_renderer("havs"), subject.scene, subject.camera, subject.parameters);
+  const Drawn judged = draw(find_renderer("reference"), subject.scene, subject.camera, subject.parameters);
+  EXPECT_LE(compare_images(ramps.image, judged.image).max, 4.0 / 255.0);
+}
+
+// No face is shared, and no order of whole cells is right.
+TEST_P(Havs, RepairsWhatTheOutsideShows) {
+  const Parameters parameters = looking(Mode::volume, "front", GetParam());
+  Subject subject{ring_of_bars(), parameters, {}, {}};
+  subject.parameters.volume.color_map.entries = {{0.0, {0.2F, 0.9F, 0.4F, 0.5F}}, {1.0, {0.9F, 0.1F, 0.1F, 1.0F}}};
+  subject.scene = make_scene(subject.material, subject.parameters);
+  subject.parameters.volume.alpha_length = 80.0 / subject.scene.bounds.diagonal();
+  for (std::size_t v = 0; v < subject.scene.scalars.size(); ++v) {
+    subject.scene.scalars[v] = static_cast<float>(v / 4) / 2.0F;  // a colour a bar
+  }
+  subject.camera = make_camera(subject.parameters, subject.scene.bounds, 160, 160);
+  gl::HeadlessContext context;
+  const gl::HeadlessContext::Current current(context);
+  gl::Volume volume;
+  volume.set_order_by_faces(true);
+  volume.set_scene(subject.scene);
+  const auto drawn = [&](HavsOrder order) {
+    subject.parameters.havs.order = order;
+    RenderStats stats;
+    volume.draw(subject.camera, subject.parameters, whole_picture(subject.camera), {}, stats, no_progress());
+    return volume.read();
+  };
+  const Drawn judged = draw(find_renderer("reference"), subject.scene, subject.camera, subject.parameters);
+  EXPECT_GT(compare_images(drawn(HavsOrder::none), judged.image).max, 0.02);
+  for (const HavsOrder order : {HavsOrder::lists, HavsOrder::k_buffer}) {
+    EXPECT_LE(compare_images(drawn(order), judged.image).max, 4.0 / 255.0);
+    EXPECT_GT(volume.last().repair.pixels, 10U);
+    EXPECT_EQ(volume.last().repair.wrong_pixels, 0U);
+  }
 }
 
 TEST_P(Havs, DrawsFromInsideTheSample) {

@@ -1,0 +1,39 @@
+// cells.vert for cells whose light is a sum of ramps (render/gl/map_ramps.h).
+layout(location = 0) in vec4 entry;   // column, row, w and u where the ray enters
+layout(location = 1) in vec4 behind;  // ways to the planes behind; slope of u
+layout(location = 2) in float row;    // of ramp_rows, 8 texels each
+
+layout(binding = 7) uniform samplerBuffer ramp_rows;
+uniform float pixel_scale;
+uniform vec2 depth_scale;
+uniform float reference;
+uniform vec4 direction;  // as cells.vert has it
+uniform vec2 middle;     // gl_FragCoord where column and row are 0
+
+noperspective out vec4 entry_at;
+noperspective out vec2 way_at;  // w; Å for each unit of way / (w · far w), or of way
+flat out vec2 along;            // slope of u; scalar from which the row's are counted
+// The row: RGB and extinction of the first piece; by which they go up from there; with the scalar's square, and the
+// lowest scalar; what the first knot adds; with the square, and the highest scalar; the second knot; and where it is.
+flat out vec4 piece, piece_slope, piece_square, knot, knot_square, next_knot, next_knot_square;
+
+void main() {
+  gl_Position = vec4(entry.xy * pixel_scale, entry.z * depth_scale.x + depth_scale.y, 1.0);
+  entry_at = vec4(entry.w, behind.xyz);
+#ifdef PERSPECTIVE
+  // Linear on the screen so nearly that it may be interpolated: these triangles are small.
+  vec2 slope = direction.xy + direction.zw * (entry.xy + middle);
+  way_at = vec2(entry.z, reference * sqrt(1.0 + dot(slope, slope)));
+#else
+  way_at = vec2(entry.z, 1.0);
+#endif
+  int texel = 8 * int(row);
+  piece = texelFetch(ramp_rows, texel);
+  piece_slope = texelFetch(ramp_rows, texel + 1);
+  piece_square = texelFetch(ramp_rows, texel + 2);
+  knot = texelFetch(ramp_rows, texel + 3);
+  knot_square = texelFetch(ramp_rows, texel + 4);
+  next_knot = texelFetch(ramp_rows, texel + 5);
+  next_knot_square = texelFetch(ramp_rows, texel + 6);
+  along = vec2(behind.w, texelFetch(ramp_rows, texel + 7).x);
+}
