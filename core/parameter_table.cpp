@@ -307,7 +307,8 @@ void add_quality(Table& t) {
   t.choice(
       "havs.integration", "Integration on OpenGL", {"auto", "exact", "table"},
       "Of the renderer havs: how a ray's segment in a cell is integrated. exact: closed form, with every bend of the "
-      "color map. table: looked up in a pre-integration table. auto: what is faster with this driver.",
+      "color map. table: looked up in a pre-integration table. auto: the table; on software drivers a sum over the "
+      "map's bends, where it is as good, and else exact.",
       [](Parameters & p) -> auto& { return p.havs.integration; });
   t.real(
       "havs.table_error", "Error of the table", "", 1e-5, 0.1,

@@ -99,7 +99,7 @@ struct VolumeParameters {
 //   none: nothing
 enum class HavsOrder { lists, k_buffer, none };
 // Of the same: how a ray's segment in a cell is integrated. exact: closed form, every knot of the colour map counts;
-// table: looked up in a pre-integration table; automatic: the faster one of the two on this driver.
+// table: looked up in a pre-integration table; automatic: the table, on software what render/gl/map_ramps.h says.
 enum class HavsIntegration { automatic, exact, table };
 struct HavsParameters {
   HavsOrder order = HavsOrder::lists;

@@ -136,12 +136,13 @@ class HavsBench {
                          {"integration", integration_name(way.parameters.havs.integration)},
                          {"opengl", driver_.renderer}});
   }
-  // What the driver does not take by itself.
-  HavsIntegration other_integration() const {
-    return driver_.software ? HavsIntegration::table : HavsIntegration::exact;
+  // What the driver takes by itself first.
+  std::vector<HavsIntegration> integrations() const {
+    if (driver_.software) return {HavsIntegration::automatic, HavsIntegration::exact, HavsIntegration::table};
+    return {HavsIntegration::automatic, HavsIntegration::exact};
   }
   std::string_view integration_name(HavsIntegration integration) const {
-    if (integration == HavsIntegration::automatic) return driver_.software ? "exact" : "table";
+    if (integration == HavsIntegration::automatic) return driver_.software ? "ramps" : "table";
     return integration == HavsIntegration::exact ? "exact" : "table";
   }
 
@@ -163,7 +164,7 @@ class HavsFrames : HavsBench {
     label_ = fmt::format("{}, {}", data.name, view.name);
     std::deque<Way> ways;
     // The default first.
-    for (const HavsIntegration integration : {HavsIntegration::automatic, other_integration()}) {
+    for (const HavsIntegration integration : integrations()) {
       Way& way = ways.emplace_back(fmt::format("havs, {}", integration_name(integration)), parameters);
       way.parameters.havs.integration = integration;
       way.volume.set_scene(scene);
@@ -266,6 +267,7 @@ class HavsFrames : HavsBench {
                   {"tetrahedra", cells},
                   {"tetrahedra_drawn", way.last.cells},
                   {"triangles", way.last.triangles},
+                  {"ramp_triangles", way.last.ramp_triangles},
                   {"rate", rate},
                   {"rate_unit", "million tetrahedra/s"},
                   {"order_ms", median(way.order_ms)},

@@ -129,6 +129,7 @@ class Volume {
   void repair(const Progress& progress);
   Programs make_programs(std::string_view vertex_file, std::string_view fragment_file,
                          std::vector<std::string> defines) const;
+  // Whether cells that suit it are drawn as sums of ramps (map_ramps.h).
   bool by_ramps(const Parameters& parameters) const;
   // Whether the table is to be used, which is then ready.
   bool make_table(const Parameters& parameters);
