@@ -171,6 +171,10 @@ bool Volume::same_view(const Camera& camera, const PixelGrid& grid, const Parame
   return view_ && same(view_->camera, camera) && view_->grid == grid && view_->color_map == parameters.volume.color_map;
 }
 
+void Volume::wait_if_timed() const {
+  if (timed_steps_) glFinish();
+}
+
 bool Volume::project(Begun& begun, const Pace& pace, const Progress& progress) {
   last_.project_ms = last_.order_ms = last_.faces_ms = 0.0;
   last_.repair = {};
@@ -193,6 +197,7 @@ bool Volume::project(Begun& begun, const Pace& pace, const Progress& progress) {
       cells_->project(begun.camera, begun.grid, begun.parameters.volume.color_map, progress);
     }
   }
+  wait_if_timed();
   last_.project_ms = ms_since(start);
   return true;
 }
@@ -238,6 +243,7 @@ bool Volume::order(const Begun& begun, const Pace& pace, Progress& progress) {
     const Clock::time_point start = Clock::now();
     Progress unheard(progress, 0.0, 0.0);  // what is reported are the cells drawn
     cells_->order(begun.camera, unheard);
+    wait_if_timed();
     last_.order_ms = ms_since(start);
   }
   view_ = View{begun.camera, begun.grid, begun.parameters.volume.color_map};
@@ -335,7 +341,10 @@ void Volume::clear(const Begun& begun) {
 void Volume::draw_portion(Begun& begun, const Pace& pace, Progress& progress) {
   const std::size_t places = cells_->places();
   const Clock::time_point start = Clock::now();
-  if (cells_->make_slab(begun.drawn)) last_.faces_ms += ms_since(start);
+  if (cells_->make_slab(begun.drawn)) {
+    wait_if_timed();
+    last_.faces_ms += ms_since(start);
+  }
   const Clock::time_point drawing = Clock::now();
   bind_picture();
   set_blending();

@@ -56,6 +56,10 @@ class Volume {
   // unless order by faces is asked for.
   void set_prepare_on_card(bool on_card) { prepare_on_card_ = on_card; }
 
+  // For measuring: whether OpenGL is waited for after each step, so that VolumeStats' times are what the step takes and
+  // not how long it takes to ask a graphics card for it.
+  void set_timed_steps(bool timed) { timed_steps_ = timed; }
+
   // Draws the lattice's pixels of the window, as a picture of their own; neither side more than largest_side(). What
   // was found for the same view is used again: the cells are not projected and sorted anew when nothing but colours
   // changes. Adds to `stats`; waits for OpenGL to finish. Throws CancelledError, UnavailableError (no memory, a lost
@@ -125,6 +129,7 @@ class Volume {
   bool order(const Begun& begun, const Pace& pace, Progress& progress);
   void clear(const Begun& begun);
   void draw_portion(Begun& begun, const Pace& pace, Progress& progress);
+  void wait_if_timed() const;
   void check_outside();
   void repair(const Progress& progress);
   Programs make_programs(std::string_view vertex_file, std::string_view fragment_file,
@@ -147,6 +152,7 @@ class Volume {
   int viewport_side_ = 0;
   const Scene* scene_ = nullptr;
   std::optional<bool> by_faces_;
+  bool timed_steps_ = false;
   std::optional<bool> prepare_on_card_;
   std::optional<View> view_;
   std::unique_ptr<ProcessorCells> processor_cells_;  // of the scene, once it is needed

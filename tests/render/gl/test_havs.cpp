@@ -290,6 +290,24 @@ TEST_F(DebugVolume, ViewsThatStayAreDrawnWithoutSorting) {
 }
 
 // However little at a time: the same bits.
+TEST_F(DebugVolume, TimedStepsMakeTheSamePicture) {
+  Subject subject = subject_of(Projection::perspective, 90, 70);
+  volume.set_scene(subject.scene);
+  draw(subject);
+  const Image whole = volume.read();
+  for (const bool on_card : {false, true}) {
+    volume.set_prepare_on_card(on_card);
+    volume.set_timed_steps(true);
+    volume.set_scene(subject.scene);
+    draw(subject);
+    EXPECT_EQ(volume.last().on_card, on_card);
+    EXPECT_LE(compare_images(volume.read(), whole).max, on_card ? 2e-3 : 0.0);
+    EXPECT_GT(volume.last().project_ms, 0.0);
+    EXPECT_GT(volume.last().order_ms, 0.0);
+    EXPECT_GT(volume.last().faces_ms, 0.0);
+  }
+}
+
 TEST_F(DebugVolume, SlicesOfTimeMakeTheSamePicture) {
   Subject subject = subject_of(Projection::perspective, 90, 70);
   volume.set_scene(subject.scene);
