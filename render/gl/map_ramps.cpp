@@ -15,6 +15,8 @@ constexpr std::size_t cells_per_range = 16384;
 
 // Narrower pieces are not resolved by segments that are widened (ramp_segment.glsl).
 constexpr double narrowest = 1.0 / 2048.0;
+// By what segments of nearly one scalar are widened to either side.
+constexpr double widening = 1.0 / 16384.0;
 // By which a row counts on where it is not cut: more than segments are widened by.
 constexpr double margin = 1.0 / 8192.0;
 // Scalars of rows at either end of the map.
@@ -129,11 +131,25 @@ MapRamps::Cell MapRamps::cell_of(float low, float high) const {
   while (last->end < static_cast<double>(high)) ++last;
   Cell cell{0.0F, static_cast<std::uint8_t>(first - pieces_.begin()),
             static_cast<std::uint8_t>(last - pieces_.begin())};
+  // Pieces next to the cell's count where segments are widened into them.
+  const auto reached = [&](const MapPiece& piece) {
+    return piece.begin < static_cast<double>(high) + widening && piece.end > static_cast<double>(low) - widening;
+  };
+  // A row adds up what steep pieces change, and floats hold only so much more than what is left in the end.
+  const double least_width = std::max(narrowest, (static_cast<double>(high) - static_cast<double>(low)) / 128.0);
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const MapPiece& piece = pieces_[i];
+    if (!reached(piece)) continue;
+    if (interior(piece) && piece.end - piece.begin < least_width) return cell;
+    const bool jump_inside = jumps_[i] != 0 && piece.begin > static_cast<double>(low) &&
+                             piece.begin < static_cast<double>(high) &&
+                             high - low < 4.0F * static_cast<float>(widening);
+    if (jump_inside) return cell;
+  }
   double densest = 0.0;
   Vec3 least(std::numeric_limits<double>::max());
   Vec3 most(std::numeric_limits<double>::lowest());
   for (auto piece = first;; ++piece) {
-    if (interior(*piece) && piece->end - piece->begin < narrowest) return cell;
     for (const double end :
          {std::max(piece->begin, static_cast<double>(low)), std::min(piece->end, static_cast<double>(high))}) {
       const glm::dvec4 color = piece->first + piece->slope * (end - piece->begin);

@@ -30,9 +30,44 @@ constexpr int most_rows_of_cell = 8;
 constexpr std::size_t room_for_rows = 2;
 
 // On the image plane: by what ramp_cells.vert interpolates across a triangle, a ray is then at most 1/1000 too long.
-constexpr double widest_ramps = 0.09;
+constexpr double widest_ramps = 0.063;
 
 constexpr GLuint ramp_rows_unit = 7;
+
+// A buffer's memory, to be written from its beginning; unmapped at the latest when it goes.
+template <class T>
+class Mapped {
+ public:
+  Mapped(const Buffer& buffer, std::size_t count) : buffer_(buffer) {
+    glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
+    data_ = static_cast<T*>(glMapBufferRange(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(T)),
+                                             GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
+    if (data_ != nullptr) return;
+    check_errors("mapping vertices");
+    throw UnavailableError("OpenGL: memory for vertices cannot be mapped");
+  }
+  ~Mapped() {
+    if (data_ != nullptr) free();
+  }
+  Mapped(const Mapped&) = delete;
+  Mapped& operator=(const Mapped&) = delete;
+
+  T* data() const { return data_; }
+  // Throws UnavailableError where what was written is lost.
+  void unmap() {
+    if (!free()) throw UnavailableError("OpenGL: memory for vertices was lost");
+  }
+
+ private:
+  bool free() {
+    data_ = nullptr;
+    glBindBuffer(GL_ARRAY_BUFFER, buffer_.name());
+    return glUnmapBuffer(GL_ARRAY_BUFFER) == GL_TRUE;
+  }
+
+  const Buffer& buffer_;
+  T* data_ = nullptr;
+};
 
 // Those of `count` cells that are not among `cells`, which ascend.
 std::vector<Index> cells_beside(std::span<const Index> cells, std::size_t count) {
@@ -282,26 +317,16 @@ void ProcessorCells::fill(Slab& slab, std::span<const Index> parts, const MapRam
   slab.with_rows = ramps != nullptr;
   slab.runs.resize(shares);
   const std::size_t count = parts.size() * room;
-  const auto map = [](Buffer& buffer, std::size_t bytes) {
-    glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
-    void* memory = glMapBufferRange(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
-                                    GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
-    if (memory == nullptr) {
-      check_errors("mapping vertices");
-      throw UnavailableError("OpenGL: memory for vertices cannot be mapped");
-    }
-    return memory;
-  };
-  auto* vertices = static_cast<FaceVertex*>(map(slab.vertices, count * sizeof(FaceVertex)));
-  std::uint8_t* rows = nullptr;
+  Mapped<FaceVertex> vertices(slab.vertices, count);
+  std::optional<Mapped<std::uint8_t>> rows;
   if (ramps != nullptr) {
     slab.rows.reserve(cells_per_slab * room, GL_STREAM_DRAW);
-    rows = static_cast<std::uint8_t*>(map(slab.rows, count));
+    rows.emplace(slab.rows, count);
   }
   const auto fill_share = [&](std::size_t begin, std::size_t end) {
     const std::size_t first = begin * room;
-    slab.runs[begin / cells_per_share] = Share(*mesh_, ramps, parts.subspan(begin, end - begin), vertices + first,
-                                               rows == nullptr ? nullptr : rows + first)
+    slab.runs[begin / cells_per_share] = Share(*mesh_, ramps, parts.subspan(begin, end - begin),
+                                               vertices.data() + first, rows ? rows->data() + first : nullptr)
                                              .fill(static_cast<GLint>(first));
   };
   if (software_) {
@@ -312,11 +337,8 @@ void ProcessorCells::fill(Slab& slab, std::span<const Index> parts, const MapRam
   } else {
     parallel_for(parts.size(), cells_per_share, fill_share);
   }
-  for (const Buffer* buffer : {&slab.rows, &slab.vertices}) {
-    if (buffer == &slab.rows && ramps == nullptr) continue;
-    glBindBuffer(GL_ARRAY_BUFFER, buffer->name());
-    glUnmapBuffer(GL_ARRAY_BUFFER);
-  }
+  if (rows) rows->unmap();
+  vertices.unmap();
 }
 
 std::size_t ProcessorCells::draw(std::size_t begin, std::size_t most, const UseProgram& use) {

@@ -195,7 +195,10 @@ struct VolumePicture::Layout {
 };
 
 VolumePicture::VolumePicture(int part_side) : pipeline_(std::make_unique<Pipeline>(part_side)) {}
-VolumePicture::~VolumePicture() = default;
+// A thread of its may still look at the scene.
+VolumePicture::~VolumePicture() {
+  pipeline_.reset();
+}
 
 void VolumePicture::set_scene(std::shared_ptr<const Scene> scene) {
   if (scene->mode != Mode::volume) {

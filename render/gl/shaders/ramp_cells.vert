@@ -7,12 +7,13 @@ layout(binding = 7) uniform samplerBuffer ramp_rows;
 uniform float pixel_scale;
 uniform vec2 depth_scale;
 uniform float reference;
+uniform float last_w;
 uniform vec4 direction;  // as cells.vert has it
 uniform vec2 middle;     // gl_FragCoord where column and row are 0
 
 noperspective out vec4 entry_at;
 noperspective out vec2 way_at;  // w; Å for each unit of way / (w · far w), or of way
-flat out vec2 along;            // slope of u; scalar from which the row's are counted
+flat out vec3 along;            // slope of u; scalar from which the row's are counted; last_w
 // The row: RGB and extinction of the first piece; by which they go up from there; with the scalar's square, and the
 // lowest scalar; what the first knot adds; with the square, and the highest scalar; the second knot; and where it is.
 flat out vec4 piece, piece_slope, piece_square, knot, knot_square, next_knot, next_knot_square;
@@ -35,5 +36,5 @@ void main() {
   knot_square = texelFetch(ramp_rows, texel + 4);
   next_knot = texelFetch(ramp_rows, texel + 5);
   next_knot_square = texelFetch(ramp_rows, texel + 6);
-  along = vec2(behind.w, texelFetch(ramp_rows, texel + 7).x);
+  along = vec3(behind.w, texelFetch(ramp_rows, texel + 7).x, last_w);
 }

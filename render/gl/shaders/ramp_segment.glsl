@@ -2,7 +2,7 @@
 
 noperspective in vec4 entry_at;
 noperspective in vec2 way_at;
-flat in vec2 along;
+flat in vec3 along;
 flat in vec4 piece, piece_slope, piece_square, knot, knot_square, next_knot, next_knot_square;
 
 #ifdef RAY_ENDS
@@ -12,8 +12,9 @@ layout(binding = 9) uniform sampler2D ray_ends;  // w where something opaque end
 #include "ramps.glsl"
 
 vec4 cell_light() {
-  float way = most(least(least(entry_at.y, entry_at.z), entry_at.w), 0.0);
   float w = way_at.x;
+  // Never farther than the farthest vertex, as in cell_segment.glsl.
+  float way = most(least(least(least(entry_at.y, entry_at.z), entry_at.w), along.z - w), 0.0);
 #ifdef RAY_ENDS
   way = least(most(texelFetch(ray_ends, ivec2(gl_FragCoord.xy), 0).x - w, 0.0), way);
 #endif

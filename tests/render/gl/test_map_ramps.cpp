@@ -36,7 +36,8 @@ struct Row { vec4 texel[8]; };
 layout(std430, binding = 0) readonly buffer Segments { vec4 segments[]; };
 layout(std430, binding = 1) writeonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = 2) readonly buffer Rows { Row rows[]; };
-vec4 piece, piece_slope, piece_square, knot, knot_square, next_knot, next_knot_square;
+vec4 piece = vec4(0.0), piece_slope = piece, piece_square = piece, knot = piece, knot_square = piece, next_knot = piece,
+     next_knot_square = piece;
 )glsl" + shader_source("ramps.glsl") +
                                R"glsl(
 void main() {
@@ -254,10 +255,22 @@ TEST(MapRamps, LeavesOutWhatIsTransparent) {
 }
 
 TEST(MapRamps, NarrowPiecesAreNotForThem) {
-  const MapRamps ramps(scene_of({{0.0F, 0.4F, 0.2F, 0.3F}, {0.4F, 0.6F, 0.5F, 0.5F}}),
-                       {{{0.5, Vec4f(1, 0, 0, 0)}, {0.5001, Vec4f(1)}, {1.0, Vec4f(1)}}}, 1.0);
+  const MapRamps ramps(
+      scene_of({{0.0F, 0.4F, 0.2F, 0.3F}, {0.4F, 0.6F, 0.5F, 0.5F}, {0.49998F, 0.49998F, 0.49998F, 0.49998F}}),
+      {{{0.5, Vec4f(1, 0, 0, 0)}, {0.5001, Vec4f(1)}, {1.0, Vec4f(1)}}}, 1.0);
   EXPECT_GT(ramps.longest(0), 0.0F);
   EXPECT_EQ(ramps.longest(1), 0.0F);
+  EXPECT_EQ(ramps.longest(2), 0.0F);  // widened into it
+}
+
+// Of a cell as wide as that, float's rounding would be more than what is left.
+TEST(MapRamps, SteepPiecesAreNotForWideCells) {
+  const double w = 1.0 / 1500.0;
+  const MapRamps ramps(scene_of({{0.2F, 0.9F, 0.5F, 0.4F}, {0.49F, 0.51F, 0.5F, 0.5F}, {0.2F, 0.3F, 0.2F, 0.3F}}),
+                       {{{0.5 - w, Vec4f(1, 0, 0, 0)}, {0.5, Vec4f(1)}, {0.5 + w, Vec4f(1, 0, 0, 0)}}}, 1.0);
+  EXPECT_EQ(ramps.longest(0), 0.0F);
+  EXPECT_GT(ramps.longest(1), 0.0F);
+  EXPECT_GT(ramps.longest(2), 0.0F);
 }
 
 // The denser, and the more the colour changes, the shorter.
