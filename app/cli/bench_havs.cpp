@@ -56,6 +56,10 @@ double median(std::vector<double> values) {
   return values.empty() ? 0.0 : values[values.size() / 2];
 }
 
+std::string percent(double share) {
+  return fmt::format("{:.1f} %", 100.0 * share);
+}
+
 std::string size_text(const Camera& camera) {
   return fmt::format("{}x{}", camera.width, camera.height);
 }
@@ -127,8 +131,9 @@ class HavsBench {
     RenderStats stats;
     way.volume.draw(camera, way.parameters, whole_picture(camera), {}, stats, progress());
   }
-  Json settings(const Way& way, const BenchView& view, const Camera& camera) const {
+  Json settings(const Way& way, const BenchScene& data, const BenchView& view, const Camera& camera) const {
     return Json::object({{"mode", "volume"},
+                         {"map", data.volume_map},
                          {"view", view.name},
                          {"projection", camera.projection == Projection::parallel ? "parallel" : "perspective"},
                          {"size", Json::array({camera.width, camera.height})},
@@ -193,7 +198,7 @@ class HavsFrames : HavsBench {
       });
     }
     report(data, view, scene, camera, turned, ways);
-    add_peer(scene, camera, view, turned, "cpu", "", cpu, of_cpu, "-");
+    add_peer(data, scene, camera, view, turned, "cpu", "", cpu, of_cpu, "-");
     Image theirs;
     std::string their_driver;
     if (vtk) {
@@ -202,7 +207,7 @@ class HavsFrames : HavsBench {
         their_driver = vtk->driver();
         vtk.reset();
       });
-      add_peer(scene, camera, view, turned, "VTK projected tetrahedra", "VTK", projected, theirs, their_driver);
+      add_peer(data, scene, camera, view, turned, "VTK projected tetrahedra", "VTK", projected, theirs, their_driver);
     }
     const bool software = driver_.software && their_driver.find("llvmpipe") != std::string::npos;
     if (software && bench_.usual_size() && width == 1024 && height == 1024) {
@@ -222,10 +227,14 @@ class HavsFrames : HavsBench {
                 "the last, projected, sorted and drawn, median of the runs; still: drawn again with the same camera, "
                 "when nothing is sorted. order, table, repair: of that, putting cells in order; making the table, when "
                 "it was made; pixels whose order was wrong. wrong: pixels whose order could not be restored. Errors "
-                "against the judge, of premultiplied RGB and coverage. Samples of about {} atoms.",
+                "against the judge, of premultiplied RGB and coverage. Samples of about {} atoms. cover: coverage, the "
+                "mean of all pixels. map: the color map, with peaks over the scalar; where that leaves less than "
+                "{:.0f} % of "
+                "a square picture covered, scalars it does not show are given a little opacity (in haze), and a "
+                "scalar that is the same everywhere is replaced by waves.",
                 driver_.renderer, driver_.version,
                 beside_vtk() ? "; VTK's projected tetrahedra on " + display_->name() : std::string(),
-                bench_.options.quick ? quick_sample_atoms : sample_atoms),
+                bench_.options.quick ? quick_sample_atoms : sample_atoms, 100.0 * nearly_empty),
             {}};
   }
 
@@ -258,8 +267,8 @@ class HavsFrames : HavsBench {
       const Times times = times_of(way.turning);
       const Times still = times_of(way.still);
       const PictureError error = error_of(scene, camera, turned, way.image);
-      BenchRow& row =
-          rows_.emplace_back(BenchRow{"havs", label_, way.name, settings(way, view, camera), "", times, {}, {}, {}});
+      BenchRow& row = rows_.emplace_back(
+          BenchRow{"havs", label_, way.name, settings(way, data, view, camera), "", times, {}, {}, {}});
       const double frames = 1e3 / times.median;
       const double rate = 1e-6 * static_cast<double>(cells) * frames;
       row.more = {{"still_ms", still.median},
@@ -274,7 +283,8 @@ class HavsFrames : HavsBench {
                   {"table_ms", way.table_ms},
                   {"repair_ms", median(way.repair_ms)},
                   {"repaired_pixels", way.last.repair.pixels},
-                  {"wrong_pixels", way.last.repair.wrong_pixels}};
+                  {"wrong_pixels", way.last.repair.wrong_pixels},
+                  {"coverage", mean_coverage(way.image)}};
       set_error(row, error);
       row.requirements = {
           {"havs: PSNR against the judge, every data set", least_psnr, true, std::min(error.psnr, 999.0), " dB"},
@@ -285,17 +295,17 @@ class HavsFrames : HavsBench {
         row.requirements.push_back(
             {"havs: frames a second of a million cells at 1024x1024 on a card", frames_of_a_card, true, frames, ""});
       }
-      table_.row({data.name, size_text(camera), grouped(cells), way.name, milliseconds(times.median),
-                  milliseconds(still.median), fmt::format("{:.1f}", frames), fmt::format("{:.2f}", rate),
-                  milliseconds(median(way.order_ms)), milliseconds(way.table_ms), milliseconds(median(way.repair_ms)),
-                  grouped(way.last.repair.wrong_pixels), short_number(error.max), fmt::format("{:.1f}", error.psnr),
-                  driver_.renderer});
+      table_.row({data.name, data.volume_map, size_text(camera), percent(mean_coverage(way.image)), grouped(cells),
+                  way.name, milliseconds(times.median), milliseconds(still.median), fmt::format("{:.1f}", frames),
+                  fmt::format("{:.2f}", rate), milliseconds(median(way.order_ms)), milliseconds(way.table_ms),
+                  milliseconds(median(way.repair_ms)), grouped(way.last.repair.wrong_pixels), short_number(error.max),
+                  fmt::format("{:.1f}", error.psnr), driver_.renderer});
     }
   }
 
-  void add_peer(const Scene& scene, const Camera& camera, const BenchView& view, const Parameters& turned,
-                const std::string& name, const std::string& peer, const std::vector<Run>& runs, const Image& image,
-                const std::string& opengl) {
+  void add_peer(const BenchScene& data, const Scene& scene, const Camera& camera, const BenchView& view,
+                const Parameters& turned, const std::string& name, const std::string& peer,
+                const std::vector<Run>& runs, const Image& image, const std::string& opengl) {
     const Times times = times_of(runs);
     const PictureError error = error_of(scene, camera, turned, image);
     const double frames = 1e3 / times.median;
@@ -304,6 +314,7 @@ class HavsFrames : HavsBench {
                                                 label_,
                                                 name,
                                                 Json::object({{"mode", "volume"},
+                                                              {"map", data.volume_map},
                                                               {"view", view.name},
                                                               {"size", Json::array({camera.width, camera.height})},
                                                               {"opengl", opengl}}),
@@ -312,18 +323,22 @@ class HavsFrames : HavsBench {
                                                 {},
                                                 {},
                                                 {}});
-    row.more = {{"frames_per_second", frames}, {"rate", rate}, {"rate_unit", "million tetrahedra/s"}};
+    row.more = {{"frames_per_second", frames},
+                {"rate", rate},
+                {"rate_unit", "million tetrahedra/s"},
+                {"coverage", mean_coverage(image)}};
     set_error(row, error);
-    table_.row({label_.substr(0, label_.find(',')), size_text(camera), grouped(scene.tetrahedra.size()), name,
-                milliseconds(times.median), "", fmt::format("{:.1f}", frames), fmt::format("{:.2f}", rate), "", "", "",
-                "", short_number(error.max), fmt::format("{:.1f}", error.psnr), opengl});
+    table_.row({data.name, data.volume_map, size_text(camera), percent(mean_coverage(image)),
+                grouped(scene.tetrahedra.size()), name, milliseconds(times.median), "", fmt::format("{:.1f}", frames),
+                fmt::format("{:.2f}", rate), "", "", "", "", short_number(error.max), fmt::format("{:.1f}", error.psnr),
+                opengl});
   }
 
   OwnThread vtk_thread_;
   std::string label_;
   std::deque<BenchRow> rows_;
-  TextTable table_{{"case", "size", "cells", "what", "ms", "still", "frames/s", "Mcells/s", "order", "table", "repair",
-                    "wrong", "max error", "PSNR, dB", "OpenGL"}};
+  TextTable table_{{"case", "map", "size", "cover", "cells", "what", "ms", "still", "frames/s", "Mcells/s", "order",
+                    "table", "repair", "wrong", "max error", "PSNR, dB", "OpenGL"}};
 };
 
 // Pixels that come out wrong, by what is done about their order.
@@ -350,18 +365,20 @@ class WrongPixels : HavsBench {
       }
       const gl::VolumeStats& last = way.volume.last();
       const Times times = times_of(runs);
-      const PictureError error = bench_.judge.error(label, scene, camera, parameters, way.volume.read(), progress());
-      BenchRow row{"havs", label, "order: " + way.name, settings(way, view, camera), "", times, {}, {}, {}};
+      const Image image = way.volume.read();
+      const PictureError error = bench_.judge.error(label, scene, camera, parameters, image, progress());
+      BenchRow row{"havs", label, "order: " + way.name, settings(way, data, view, camera), "", times, {}, {}, {}};
       row.more = {{"k", k},
                   {"repaired_pixels", last.repair.pixels},
                   {"wrong_pixels", last.repair.wrong_pixels},
-                  {"repair_ms", last.repair.ms}};
+                  {"repair_ms", last.repair.ms},
+                  {"coverage", mean_coverage(image)}};
       set_error(row, error);
       bench_.result.add(std::move(row));
-      table_.row({data.name, size_text(camera), grouped(scene.tetrahedra.size()), scene.delaunay ? "yes" : "no",
-                  way.name, grouped(last.repair.pixels), grouped(last.repair.wrong_pixels),
-                  milliseconds(last.repair.ms), milliseconds(times.median), short_number(error.max),
-                  fmt::format("{:.1f}", error.psnr), driver_.renderer});
+      table_.row({data.name, size_text(camera), percent(mean_coverage(image)), grouped(scene.tetrahedra.size()),
+                  scene.delaunay ? "yes" : "no", way.name, grouped(last.repair.pixels),
+                  grouped(last.repair.wrong_pixels), milliseconds(last.repair.ms), milliseconds(times.median),
+                  short_number(error.max), fmt::format("{:.1f}", error.psnr), driver_.renderer});
     }
   }
 
@@ -377,8 +394,8 @@ class WrongPixels : HavsBench {
   }
 
  private:
-  TextTable table_{{"case", "size", "cells", "Delaunay", "order", "repaired", "wrong", "repair, ms", "ms", "max error",
-                    "PSNR, dB", "OpenGL"}};
+  TextTable table_{{"case", "size", "cover", "cells", "Delaunay", "order", "repaired", "wrong", "repair, ms", "ms",
+                    "max error", "PSNR, dB", "OpenGL"}};
 };
 
 // Samples small enough for the judge, and the public data sets.
@@ -398,8 +415,10 @@ std::vector<std::string> usual_scenes(bool full) {
 std::optional<BenchScene> scene_of(RenderBench& bench, const std::string& name) {
   bench.session.progress().stage(name);
   try {
-    return make_bench_scene(name, bench.options.data, bench.options.quick ? quick_sample_atoms : sample_atoms,
-                            bench.session.progress());
+    BenchScene scene = make_bench_scene(
+        name, bench.options.data, bench.options.quick ? quick_sample_atoms : sample_atoms, bench.session.progress());
+    show_in_volume(scene, bench.session.progress());
+    return scene;
   } catch (const UnavailableError& error) {
     bench.session.note(error.what());
     return std::nullopt;

@@ -91,6 +91,12 @@ BenchRow picture_row(const std::string& case_name, std::string what, Json settin
   return row;
 }
 
+double mean_coverage(const Image& picture) {
+  double sum = 0.0;
+  for (const Vec4f& pixel : picture.pixels) sum += static_cast<double>(pixel.a);
+  return picture.pixels.empty() ? 0.0 : sum / static_cast<double>(picture.pixels.size());
+}
+
 void set_error(BenchRow& row, const PictureError& error) {
   row.max_error = error.max;
   row.rmse = error.rmse;

@@ -72,6 +72,9 @@ Json picture_settings(const Parameters& parameters, const std::string& view, con
 // A row of suite "render" with the times, steps and rates of `picture`.
 BenchRow picture_row(const std::string& case_name, std::string what, Json settings, const TimedPicture& picture);
 
+// Of premultiplied pictures: A, averaged over all pixels; 0 where nothing is seen, 1 where all of it is opaque.
+double mean_coverage(const Image& picture);
+
 // Sets max_error, rmse and psnr.
 void set_error(BenchRow& row, const PictureError& error);
 

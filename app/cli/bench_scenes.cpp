@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 
+#include "app/cli/bench_render_tools.h"
 #include "app/cli/bench_tools.h"
 #include "app/cli/read_mesh.h"
 #include "core/camera.h"
@@ -18,6 +19,8 @@
 #include "preprocess/pipeline.h"
 #include "preprocess/tetrahedralize.h"
 #include "preprocess/write_atoms.h"
+#include "render/renderer.h"
+#include "render/scene.h"
 #include "samples/random.h"
 #include "samples/samples.h"
 
@@ -26,6 +29,8 @@ namespace atomesh::cli {
 namespace {
 
 constexpr double jitter = 0.3;  // of the lattice's step, along each axis
+constexpr float haze = 0.05F;   // opacity of what show_in_volume() no longer leaves transparent
+constexpr std::string_view waves_name = "waves";
 
 std::vector<BenchSceneInfo> make_table() {
   std::vector<BenchSceneInfo> table{{"lattice-36", "jittered 36³ lattice, Delaunay, smooth scalar: 0.32 M cells", ""},
@@ -132,8 +137,16 @@ Material sample_material(const std::string& name, std::size_t atoms, Progress& p
   return preprocess(file, {}, report, progress);
 }
 
-bool varies(const VertexField& field) {
-  return std::any_of(field.values.begin(), field.values.end(), [&](float v) { return v != field.values.front(); });
+bool varies(const std::vector<float>& values) {
+  return std::any_of(values.begin(), values.end(), [&](float v) { return v != values.front(); });
+}
+
+void add_waves(Material& material) {
+  const Bounds bounds = bounds_of(material.mesh.vertices);
+  VertexField& waves = material.fields.emplace_back(VertexField{std::string(waves_name), {}});
+  for (const Vec3& p : material.mesh.vertices) {
+    waves.values.push_back(smooth_scalar(p - bounds.min, 0.6 * bounds.diagonal()));
+  }
 }
 
 Material file_material(const BenchSceneInfo& info, const std::string& data_folder, Progress& progress) {
@@ -143,13 +156,8 @@ Material file_material(const BenchSceneInfo& info, const std::string& data_folde
   }
   MeshFileReport report;
   Material material = read_mesh_file(path, {}, report, progress);
-  if (std::none_of(material.fields.begin(), material.fields.end(), varies)) {
-    const Bounds bounds = bounds_of(material.mesh.vertices);
-    VertexField& waves = material.fields.emplace_back(VertexField{"waves", {}});
-    for (const Vec3& p : material.mesh.vertices) {
-      waves.values.push_back(smooth_scalar(p - bounds.min, 0.6 * bounds.diagonal()));
-    }
-  }
+  const auto shows_something = [](const VertexField& field) { return varies(field.values); };
+  if (std::none_of(material.fields.begin(), material.fields.end(), shows_something)) add_waves(material);
   return material;
 }
 
@@ -194,6 +202,26 @@ BenchScene make_bench_scene(const std::string& name, const std::string& data_fol
   }
   dress(scene);
   return scene;
+}
+
+void show_in_volume(BenchScene& scene, Progress& progress) {
+  constexpr int side = 64;  // pixels
+  const Parameters parameters = scene.seen(scene.views.front(), Mode::volume);
+  const Scene drawn = make_scene(scene.material, parameters, progress);
+  const Camera camera = make_camera(parameters, drawn.bounds, side, side);
+  RenderStats stats;
+  const Image picture = find_renderer("cpu").draw(drawn, camera, parameters, stats, {}, progress);
+  if (mean_coverage(picture) >= nearly_empty) return;
+  if (varies(drawn.scalars)) {
+    for (ColorMapEntry& entry : scene.parameters.volume.color_map.entries) {
+      entry.color.a = std::max(entry.color.a, haze);
+    }
+    scene.volume_map = "peaks in haze";
+    return;
+  }
+  add_waves(scene.material);
+  scene.parameters.volume.field = waves_name;
+  scene.volume_map = "peaks of waves";
 }
 
 }  // namespace atomesh::cli

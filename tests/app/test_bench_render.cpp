@@ -174,6 +174,9 @@ TEST_F(BenchRender, VolumesOnOpenGlStandBesideTheCpuAndVtk) {
     what.insert(row["what"]);
     EXPECT_GT(row["frames_per_second"], 0.0);
     EXPECT_FALSE(row["settings"]["opengl"].get<std::string>().empty());
+    EXPECT_EQ(row["settings"]["map"], "peaks");
+    EXPECT_GT(row["coverage"], 0.02) << row.dump(1);  // of a picture that is not nearly empty
+    EXPECT_LT(row["coverage"], 0.5) << row.dump(1);   // a block fills no more of it
     if (!row["what"].get<std::string>().starts_with("havs")) continue;
     EXPECT_GT(row["tetrahedra_drawn"], 1000U);
     EXPECT_EQ(row["wrong_pixels"], 0U);
@@ -184,9 +187,32 @@ TEST_F(BenchRender, VolumesOnOpenGlStandBesideTheCpuAndVtk) {
   EXPECT_TRUE(what.contains("VTK projected tetrahedra") || err.find("no display") != std::string::npos) << err;
 }
 
+TEST_F(BenchRender, VolumesOfSamplesShowSomethingWhateverTheirScalar) {
+  // Many defects; a few; and no defects at all (a sample that --quick would make too small).
+  const std::vector<std::vector<std::string>> samples{{"palladium-hydrogen", "peaks", "--quick"},
+                                                      {"cu-line-defect", "peaks in haze"},
+                                                      {"cacuo2-spiral", "peaks of waves"}};
+  for (const std::vector<std::string>& sample : samples) {
+    std::vector<std::string> arguments{"bench", "havs",       "--part", "frames", "--json", "-",      "--repeats",
+                                       "1",     "--no-peers", "--size", "64x64",  "--case", sample[0]};
+    arguments.insert(arguments.end(), sample.begin() + 2, sample.end());
+    const Outcome outcome = place.run(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const json bench = json::parse(outcome.out);
+    ASSERT_EQ(bench["rows"].size(), 3U);  // havs twice, cpu
+    const double of_cpu = bench["rows"].back()["coverage"];
+    for (const json& row : bench["rows"]) {
+      EXPECT_EQ(row["settings"]["map"], sample[1]);
+      EXPECT_GE(row["coverage"], 0.02) << row.dump(1);
+      EXPECT_NEAR(row["coverage"].get<double>(), of_cpu, 1e-3) << row.dump(1);
+    }
+  }
+}
+
 TEST_F(BenchRender, MoreOfAKBufferLeavesFewerPixelsWrong) {
   std::uint64_t before = std::numeric_limits<std::uint64_t>::max();
   for (const json& row : rows("order", {"--case", "lattice-12-random"}, "havs")) {
+    EXPECT_GT(row["coverage"], 0.02) << row.dump(1);
     const std::uint64_t wrong = row["wrong_pixels"];
     if (row["k"] == 0) {
       EXPECT_EQ(wrong, 0U);
