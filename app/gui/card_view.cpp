@@ -145,6 +145,7 @@ void CardView::draw_volume() {
       moving_.drew_whole(volume_->last(), parameters_.supersampling);
       return;
     }
+    volume_->give_up();
     moving_.gave_up_whole(2.0 * moving_budget);
     detail_ = moving_.next();
   }

@@ -199,7 +199,7 @@ TEST_F(BenchRender, VolumesOfSamplesShowSomethingWhateverTheirScalar) {
     const Outcome outcome = place.run(arguments);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const json bench = json::parse(outcome.out);
-    ASSERT_EQ(bench["rows"].size(), 3U);  // havs twice, cpu
+    ASSERT_GE(bench["rows"].size(), 3U);  // havs in some ways, cpu
     const double of_cpu = bench["rows"].back()["coverage"];
     for (const json& row : bench["rows"]) {
       EXPECT_EQ(row["settings"]["map"], sample[1]);
