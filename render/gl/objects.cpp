@@ -132,6 +132,22 @@ void Texture::bind(GLuint unit) const {
   glBindTexture(target_, handle_.name());
 }
 
+void BufferTexture::attach() {
+  if (!handle_) {
+    GLuint name = 0;
+    glGenTextures(1, &name);
+    handle_ = Handle<detail::destroy_texture>(name);
+  }
+  glBindTexture(GL_TEXTURE_BUFFER, handle_.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer_.name());
+  glBindTexture(GL_TEXTURE_BUFFER, 0);
+}
+
+void BufferTexture::bind(GLuint unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_BUFFER, handle_.name());
+}
+
 std::string shader_source(std::string_view file) {
   const auto found = std::find_if(shader_files.begin(), shader_files.end(),
                                   [file](const ShaderFile& shader) { return shader.name == file; });

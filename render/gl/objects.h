@@ -118,6 +118,27 @@ class Texture {
   int depth_ = 0;
 };
 
+// A buffer whose texels, of four floats each, shaders fetch by their number (samplerBuffer).
+class BufferTexture {
+ public:
+  BufferTexture() = default;
+  // Exactly these values from the first texel on; grows where needed. A value is one texel or several.
+  template <class T>
+  void write(std::span<const T> values, GLenum usage = GL_DYNAMIC_DRAW) {
+    static_assert(sizeof(T) % (4 * sizeof(float)) == 0);
+    buffer_.write(values, usage);
+    attach();
+  }
+  explicit operator bool() const { return static_cast<bool>(handle_); }  // whether anything was written
+  void bind(GLuint unit) const;                                          // as the texture of that unit
+
+ private:
+  void attach();
+
+  Buffer buffer_;
+  Handle<detail::destroy_texture> handle_;
+};
+
 // A source of render/gl/shaders/, by its file's name, with the others it includes (#include "name") in place. Error for
 // a name there is not.
 std::string shader_source(std::string_view file);

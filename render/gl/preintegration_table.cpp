@@ -57,15 +57,7 @@ void PreintegrationTable::update(const ColorMap& color_map, double alpha_length)
   alpha_length_ = alpha_length;
   pieces_ = map_pieces(color_map, alpha_length);
   longest_ = -1.0;
-  pieces_buffer_.write(std::span<const Vec4f>(texels_of(pieces_)));
-  if (!pieces_texture_) {
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    pieces_texture_ = Handle<detail::destroy_texture>(name);
-  }
-  glActiveTexture(GL_TEXTURE0 + unit);
-  glBindTexture(GL_TEXTURE_BUFFER, pieces_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, pieces_buffer_.name());
+  pieces_texture_.write(std::span<const Vec4f>(texels_of(pieces_)));
 }
 
 bool PreintegrationTable::make_table(double longest, double error) {
@@ -106,8 +98,7 @@ void PreintegrationTable::fill(const TableSize& size) {
 }
 
 void PreintegrationTable::bind() const {
-  glActiveTexture(GL_TEXTURE0 + unit);
-  glBindTexture(GL_TEXTURE_BUFFER, pieces_texture_.name());
+  pieces_texture_.bind(unit);
   if (stats_.bytes == 0) return;
   table_.bind(unit);
   scales_.bind_uniform(scales_block);

@@ -43,8 +43,7 @@ class PreintegrationTable {
   ColorMap color_map_;
   double alpha_length_ = 0.0;
   std::vector<MapPiece> pieces_;
-  Buffer pieces_buffer_;
-  Handle<detail::destroy_texture> pieces_texture_;
+  BufferTexture pieces_texture_;
 
   double longest_ = -1.0;  // what the table was made for; negative: for nothing
   double error_ = 0.0;
