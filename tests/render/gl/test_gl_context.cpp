@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "render/gl/context.h"
 #include "render/gl/objects.h"
+#include "tests/render/gl/shader_harness.h"
 
 using namespace atomesh;
 using namespace atomesh::gl;
@@ -73,6 +74,30 @@ TEST(GlContext, ReportsWhatTheDriverFindsWrong) {
 
 TEST(GlObjects, AShaderThatIsNotThereIsNamed) {
   EXPECT_THROW(shader_source("nowhere.frag"), Error);
+}
+
+TEST(GlObjects, ShadersFetchTheTexelsThatWereWrittenLast) {
+  HeadlessContext context(true);
+  const HeadlessContext::Current current(context);
+  const ShaderFunction fetch(R"glsl(
+layout(binding = 3) uniform samplerBuffer texels;
+vec4 result_of(vec4 given) { return texelFetch(texels, int(given.x)); })glsl");
+  BufferTexture texture;
+  EXPECT_FALSE(texture);
+  // It grows, and stays as large as it was.
+  for (const int count : {3, 5000, 20}) {
+    std::vector<Vec4f> texels;
+    std::vector<Vec4f> numbers;
+    for (int i = 0; i < count; ++i) {
+      texels.emplace_back(i, 0.5 * i, count, -1.0);
+      numbers.emplace_back(i, 0.0, 0.0, 0.0);
+    }
+    texture.write(std::span<const Vec4f>(texels));
+    EXPECT_TRUE(texture);
+    texture.bind(3);
+    EXPECT_EQ(fetch(numbers), texels) << count;
+  }
+  EXPECT_NO_THROW(check_errors("fetching texels"));
 }
 
 }  // namespace

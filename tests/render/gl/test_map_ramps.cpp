@@ -13,38 +13,26 @@
 #include "render/gl/context.h"
 #include "render/gl/map_ramps.h"
 #include "render/gl/objects.h"
+#include "tests/render/gl/shader_harness.h"
 
 using namespace atomesh;
 using namespace atomesh::gl;
 
 namespace {
 
-struct Segment {
-  float near = 0.0F;  // scalar
-  float far = 0.0F;
-  float length = 0.0F;  // Å
-  float row = 0.0F;
-};
-
-// A compute shader that puts every segment through ramps_light() with its row.
+// ramps_light() of every segment with its row.
 class RampsShader {
  public:
-  RampsShader() {
-    const std::string source = R"glsl(#version 430 core
-layout(local_size_x = 64) in;
+  RampsShader()
+      : function_(R"glsl(
 struct Row { vec4 texel[8]; };
-layout(std430, binding = 0) readonly buffer Segments { vec4 segments[]; };
-layout(std430, binding = 1) writeonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = 2) readonly buffer Rows { Row rows[]; };
 vec4 piece = vec4(0.0), piece_slope = piece, piece_square = piece, knot = piece, knot_square = piece, next_knot = piece,
      next_knot_square = piece;
 )glsl" + shader_source("ramps.glsl") +
-                               R"glsl(
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= segments.length()) return;
-  vec4 s = segments[i];
-  Row row = rows[int(s.w)];
+                  R"glsl(
+vec4 result_of(vec4 segment) {
+  Row row = rows[int(segment.w)];
   piece = row.texel[0];
   piece_slope = row.texel[1];
   piece_square = row.texel[2];
@@ -52,36 +40,18 @@ void main() {
   knot_square = row.texel[4];
   next_knot = row.texel[5];
   next_knot_square = row.texel[6];
-  lights[i] = ramps_light(s.x, s.y, row.texel[7].x, s.z);
-})glsl";
-    const char* text = source.c_str();
-    program_ = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
-    std::array<char, 4096> log{};
-    glGetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    EXPECT_STREQ(log.data(), "");
-  }
-  ~RampsShader() { glDeleteProgram(program_); }
-  RampsShader(const RampsShader&) = delete;
-  RampsShader& operator=(const RampsShader&) = delete;
+  return ramps_light(segment.x, segment.y, row.texel[7].x, segment.z);
+})glsl") {}
 
   std::vector<Vec4f> lights(std::span<const RampRow> rows, const std::vector<Segment>& segments) const {
-    Buffer in;
-    Buffer out;
     Buffer table;
-    in.write(std::span<const Segment>(segments));
     table.write(rows);
-    out.reserve(segments.size() * sizeof(Vec4f));
-    in.bind_storage(0);
-    out.bind_storage(1);
     table.bind_storage(2);
-    glUseProgram(program_);
-    glDispatchCompute(static_cast<GLuint>((segments.size() + 63) / 64), 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    return out.read<Vec4f>(segments.size());
+    return function_(segments);
   }
 
  private:
-  GLuint program_ = 0;
+  ShaderFunction function_;
 };
 
 // Cells of which only the scalars matter.
@@ -100,36 +70,15 @@ Scene scene_of(const std::vector<std::array<float, 4>>& cells) {
   return scene;
 }
 
-ColorMap peaks() {
-  return {{{0.0, {0.05F, 0.1F, 0.5F, 0.0F}},
-           {0.2, {0.1F, 0.4F, 0.9F, 0.12F}},
-           {0.35, {0.1F, 0.8F, 0.6F, 0.0F}},
-           {0.5, {0.3F, 0.8F, 0.2F, 0.25F}},
-           {0.58, {0.9F, 0.85F, 0.1F, 0.05F}},
-           {0.8, {0.9F, 0.4F, 0.05F, 0.6F}},
-           {1.0, {0.8F, 0.0F, 0.1F, 1.0F}}}};
-}
-
-struct NamedMap {
-  std::string name;
-  ColorMap map;
-};
-
-std::vector<NamedMap> maps() {
-  const Vec4f red(1, 0, 0, 1);
-  const Vec4f green(0, 1, 0, 0.5);
-  const Vec4f blue(0, 0, 1, 0);
-  std::vector<NamedMap> all{
-      {"gray", preset_color_map("gray")},
-      {"viridis", preset_color_map("viridis")},
-      {"figure 5.8", preset_color_map("seed-figure-5.8")},
-      {"peaks", peaks()},
-      {"jumps", {{{0.25, blue}, {0.25, red}, {0.5, red}, {0.5, green}, {0.75, green}, {0.75, blue}}}},
-      {"windows", {{{0.0, blue}, {0.3, blue}, {0.4, red}, {0.5, blue}, {0.8, blue}, {1.0, green}}}}};
-  for (NamedMap& map : all) {
-    for (ColorMapEntry& entry : map.map.entries) entry.scalar = static_cast<double>(static_cast<float>(entry.scalar));
-  }
-  return all;
+NamedMap peaks() {
+  return {"peaks",
+          {{{0.0, {0.05F, 0.1F, 0.5F, 0.0F}},
+            {0.2, {0.1F, 0.4F, 0.9F, 0.12F}},
+            {0.35, {0.1F, 0.8F, 0.6F, 0.0F}},
+            {0.5, {0.3F, 0.8F, 0.2F, 0.25F}},
+            {0.58, {0.9F, 0.85F, 0.1F, 0.05F}},
+            {0.8, {0.9F, 0.4F, 0.05F, 0.6F}},
+            {1.0, {0.8F, 0.0F, 0.1F, 1.0F}}}}};
 }
 
 // Of many and few pieces, of one scalar, with ends at knots.
@@ -205,7 +154,7 @@ TEST_F(MapRampsShader, APeakIsItsArea) {
 TEST_F(MapRampsShader, IsTheJudgeUpToTheLongestSegment) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> one(0.0F, 1.0F);
-  for (const NamedMap& map : maps()) {
+  for (const NamedMap& map : segment_maps(peaks())) {
     const std::vector<std::array<float, 4>> cells = some_cells(map.map);
     const double alpha_length = 4.0;
     const MapRamps ramps(scene_of(cells), map.map, alpha_length);

@@ -13,82 +13,35 @@
 #include "render/gl/objects.h"
 #include "render/gl/preintegration_map.h"
 #include "render/gl/preintegration_table.h"
+#include "tests/render/gl/shader_harness.h"
 
 using namespace atomesh;
 using namespace atomesh::gl;
 
 namespace {
 
-struct Segment {
-  float near = 0.0F;  // scalar
-  float far = 0.0F;
-  float length = 0.0F;  // Å
-  float unused = 0.0F;
-};
-
-// A compute shader that puts every segment of a buffer through segment_light().
+// segment_light() of every segment, with EXACT or TABLE.
 class SegmentShader {
  public:
-  explicit SegmentShader(const std::string& define) {
-    const std::string source = "#version 430 core\n#define " + define + "\n" + shader_source("segment.glsl") + R"glsl(
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Segments { vec4 segments[]; };
-layout(std430, binding = 1) writeonly buffer Lights { vec4 lights[]; };
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i < segments.length()) lights[i] = segment_light(segments[i].x, segments[i].y, segments[i].z);
-})glsl";
-    const char* text = source.c_str();
-    program_ = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
-    std::array<char, 4096> log{};
-    glGetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    EXPECT_STREQ(log.data(), "");
-  }
-  ~SegmentShader() { glDeleteProgram(program_); }
-  SegmentShader(const SegmentShader&) = delete;
-  SegmentShader& operator=(const SegmentShader&) = delete;
+  explicit SegmentShader(const std::string& define)
+      : function_("#define " + define + "\n" + shader_source("segment.glsl") + R"glsl(
+vec4 result_of(vec4 segment) { return segment_light(segment.x, segment.y, segment.z); })glsl") {}
 
   std::vector<Vec4f> lights(const PreintegrationTable& table, const std::vector<Segment>& segments) const {
-    Buffer in;
-    Buffer out;
-    in.write(std::span<const Segment>(segments));
-    out.reserve(segments.size() * sizeof(Vec4f));
-    in.bind_storage(0);
-    out.bind_storage(1);
     table.bind();
-    glUseProgram(program_);
-    glDispatchCompute(static_cast<GLuint>((segments.size() + 63) / 64), 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    return out.read<Vec4f>(segments.size());
+    return function_(segments);
   }
 
  private:
-  GLuint program_ = 0;
+  ShaderFunction function_;
 };
 
-struct NamedMap {
-  std::string name;
-  ColorMap map;
-};
-
-// Knots are floats, so that the judge has them where the shader has them.
 std::vector<NamedMap> maps() {
   const Vec4f red(1, 0, 0, 1);
   const Vec4f green(0, 1, 0, 0.5);
   const Vec4f blue(0, 0, 1, 0);
-  std::vector<NamedMap> all{
-      {"gray", preset_color_map("gray")},
-      {"viridis", preset_color_map("viridis")},
-      {"figure 5.8", preset_color_map("seed-figure-5.8")},
-      {"jumps", {{{0.25, blue}, {0.25, red}, {0.5, red}, {0.5, green}, {0.75, green}, {0.75, blue}}}},
-      {"steep", {{{0.5, blue}, {0.50390625, red}, {0.5078125, green}, {0.75, green}, {0.7578125, blue}}}},
-      {"windows", {{{0.0, blue}, {0.3, blue}, {0.4, red}, {0.5, blue}, {0.8, blue}, {1.0, green}}}}};
-  for (NamedMap& map : all) {
-    for (ColorMapEntry& entry : map.map.entries) {
-      entry.scalar = static_cast<double>(static_cast<float>(entry.scalar));
-    }
-  }
-  return all;
+  return segment_maps(
+      {"steep", {{{0.5, blue}, {0.50390625, red}, {0.5078125, green}, {0.75, green}, {0.7578125, blue}}}});
 }
 
 // Everywhere, in small ranges, at and about knots, of equal scalars, of length 0.
