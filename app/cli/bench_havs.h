@@ -15,4 +15,9 @@ std::vector<std::string> havs_bench_parts();
 // Throws UsageError for an unknown part or case, UnavailableError where there is no OpenGL 4.3.
 void bench_havs(const RenderBenchOptions& options, Session& session, BenchResult& result);
 
+// Frames of a turning and of a resting view, what they are made of, and errors, beside the peers.
+void bench_havs_frames(RenderBench& bench);
+// Pixels that k-buffers and lists cannot restore, where cells are ordered by their keys alone.
+void bench_havs_order(RenderBench& bench);
+
 }  // namespace atomesh::cli

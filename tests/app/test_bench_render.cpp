@@ -179,6 +179,7 @@ TEST_F(BenchRender, VolumesOnOpenGlStandBesideTheCpuAndVtk) {
     EXPECT_LT(row["coverage"], 0.5) << row.dump(1);   // a block fills no more of it
     if (!row["what"].get<std::string>().starts_with("havs")) continue;
     EXPECT_GT(row["tetrahedra_drawn"], 1000U);
+    EXPECT_GT(row["order_ms"], 0.0);
     EXPECT_EQ(row["wrong_pixels"], 0U);
     EXPECT_LT(row["max_error"], 4.0 / 255.0);
     EXPECT_GT(row["psnr"], 45.0);
