@@ -28,7 +28,7 @@ void store_kept(Composed c) {
 void keep(float depth, vec4 light) {
   if (light == vec4(0.0)) return;
   Composed composed = load_kept();
-  k_buffer_add(composed, depth, packed_light(light));
+  k_buffer_add(composed, max(depth, 0.0), packed_light(light));  // as list.glsl
   store_kept(composed);
 }
 

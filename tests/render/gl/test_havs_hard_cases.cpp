@@ -24,9 +24,6 @@ constexpr double beside = 1.0 / 256.0;
 // rough.
 constexpr double length_limit = 0.01;
 constexpr double color_limit = 4.0 / 255.0;
-// The card orders cells by their keys alone, and where these are wrong by their depths: which say little of cells that
-// are seen from the side, narrower than vertices are moved. That is a pixel here and there.
-constexpr double color_limit_of_depths = 7.0 / 255.0;
 
 // Under the sanitizers, which look at what the code does and not at what comes out, a view of each case has to do.
 #ifdef __SANITIZE_ADDRESS__
@@ -61,7 +58,6 @@ class HavsHardCases : public testing::TestWithParam<bool> {
     on_card_ += volume_.last().on_card ? 1 : 0;
     return volume_.read();
   }
-  bool on_card() const { return volume_.last().on_card; }
 
  private:
   gl::HeadlessContext context_;
@@ -103,7 +99,7 @@ TEST_P(HavsHardCases, PicturesAreTheJudges) {
       EXPECT_LE(outside_of_colors(image), 1e-5) << hard.name << ", " << view.name;
       if (hard.known != HardCase::Known::values) continue;  // which of two overlapping cells comes first is open
       const VariedError error = JudgedRays(scene, view.camera, parameters, beside).error(image);
-      EXPECT_LE(error.nearest, on_card() ? color_limit_of_depths : color_limit)
+      EXPECT_LE(error.nearest, color_limit)
           << hard.name << ", " << view.name << ": pixel " << error.column << ' ' << error.row;
     }
   }

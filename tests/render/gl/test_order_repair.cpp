@@ -323,6 +323,35 @@ TEST_F(OrderRepairTest, ReplaysListsThroughKBuffers) {
   EXPECT_EQ(wrong.back(), 0U);
 }
 
+// Depths a little before the first one, which rounding makes of what begins there: clamped for the depth test, they are
+// less than nothing elsewhere. They come first, as they were drawn.
+TEST_F(OrderRepairTest, WhatRoundingPutsBeforeTheFirstDepthComesFirst) {
+  glEnable(GL_DEPTH_CLAMP);
+  const Vec4f red(0.4F, 0.0F, 0.0F, 0.5F);
+  const Vec4f green(0.0F, 0.4F, 0.0F, 0.5F);
+  const Vec4f blue(0.0F, 0.0F, 0.4F, 0.5F);
+  const std::vector<Layer> layers{// the first one first, two others turned round
+                                  {0, 30, 0, 30, -1e-3F, red},
+                                  {0, 30, 0, 30, 0.5F, green},
+                                  {0, 30, 0, 30, 0.25F, blue},
+                                  // the first one last, and next to last
+                                  {40, 70, 0, 30, 0.5F, green},
+                                  {40, 70, 0, 30, -1e-7F, red},
+                                  {50, 70, 0, 30, 0.75F, blue},
+                                  // two first ones
+                                  {80, 90, 0, 30, -2e-3F, red},
+                                  {80, 90, 0, 30, -1e-3F, green},
+                                  {80, 90, 0, 30, 0.5F, green},
+                                  {80, 90, 0, 30, 0.25F, blue}};
+  std::vector<RepairMethod> methods{RepairMethod::sort, RepairMethod::replay};
+  if (current_driver().interlock || current_driver().software) methods.push_back(RepairMethod::keep);
+  for (const RepairMethod method : methods) {
+    const RepairStats stats = compare(layers, {.method = method, .k = 4});
+    EXPECT_EQ(stats.pixels, 30U * (30 + 30 + 10));
+    EXPECT_EQ(stats.wrong_pixels, 0U);
+  }
+}
+
 // llvmpipe runs a pixel's fragments in the order of drawing without being asked.
 TEST_F(OrderRepairTest, KeepsFragmentsInOrder) {
   const Driver driver = current_driver();
