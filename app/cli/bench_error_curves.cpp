@@ -135,7 +135,7 @@ class Curves {
       } else {
         plot.series.push_back({name, {{times.median, error.max}}, false});
       }
-      BenchRow row = picture_row(label_, name, picture_settings(p, view.name, camera), *one.picture);
+      BenchRow row = picture_row(label_, name, picture_settings(data, view, p, camera), *one.picture);
       row.suite = "error";
       set_error(row, error);
       if (p.integrator == Integrator::exact) {

@@ -25,10 +25,10 @@ class SceneErrors {
         const Scene scene = make_scene(data.material, parameters, bench_.session.progress());
         const Camera camera = make_camera(parameters, scene.bounds, bench_.width(512), bench_.height(512));
         const std::string label = fmt::format("{}, {}, {}", data.name, view.name, mode_name(mode));
-        add(label, view, scene, camera, parameters);
+        add(label, data, view, scene, camera, parameters);
         if (has_integrator(mode) && parameters.integrator != Integrator::exact) {
           parameters.integrator = Integrator::exact;
-          add(label, view, scene, camera, parameters);
+          add(label, data, view, scene, camera, parameters);
         }
       }
     }
@@ -38,20 +38,20 @@ class SceneErrors {
     return {"Errors on all data sets",
             std::move(table_),
             fmt::format("One run each. Samples of about {} atoms. Surface and xray have no integrator: their closed "
-                        "form is the only one.",
-                        bench_.options.quick ? quick_sample_atoms : sample_atoms),
+                        "form is the only one. Map: {}.",
+                        bench_.options.quick ? quick_sample_atoms : sample_atoms, volume_map_caption()),
             {}};
   }
 
  private:
-  void add(const std::string& label, const BenchView& view, const Scene& scene, const Camera& camera,
-           const Parameters& parameters) {
+  void add(const std::string& label, const BenchScene& data, const BenchView& view, const Scene& scene,
+           const Camera& camera, const Parameters& parameters) {
     Progress& progress = bench_.session.progress();
     progress.stage(label);
     TimedPicture picture(scene, camera, parameters);
     picture.draw(progress);
     const PictureError error = bench_.judge.error(label, scene, camera, parameters, picture.image(), progress);
-    BenchRow row = picture_row(label, "default setting", picture_settings(parameters, view.name, camera), picture);
+    BenchRow row = picture_row(label, "default setting", picture_settings(data, view, parameters, camera), picture);
     row.suite = "error";
     set_error(row, error);
     const bool volume = has_integrator(parameters.mode);
@@ -63,14 +63,15 @@ class SceneErrors {
       row.requirements.push_back({"scenes: closed form, largest error", closed_form_limit, false, error.max, ""});
     }
     bench_.result.add(std::move(row));
-    table_.row({label, volume ? integrator_text(parameters) : "", milliseconds(picture.total().median),
+    table_.row({label, parameters.mode == Mode::volume ? data.volume_map : "",
+                volume ? integrator_text(parameters) : "", milliseconds(picture.total().median),
                 short_number(error.max), short_number(error.rmse),
                 std::isfinite(error.psnr) ? fmt::format("{:.1f}", error.psnr) : "-",
                 error.max > 0.0 ? fmt::format("{}, {}", error.column, error.row) : ""});
   }
 
   RenderBench& bench_;
-  TextTable table_{{"case", "integrator", "ms", "max error", "RMS", "PSNR, dB", "at pixel"}};
+  TextTable table_{{"case", "map", "integrator", "ms", "max error", "RMS", "PSNR, dB", "at pixel"}};
 };
 
 std::vector<std::string> all_scenes(bool full) {

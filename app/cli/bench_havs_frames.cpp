@@ -191,13 +191,11 @@ class HavsFrames : HavsBench {
             "when nothing is sorted. order, table, repair: of that{}, putting cells in order; making the table, when "
             "it was made; pixels whose order was wrong. wrong: pixels whose order could not be restored. Errors "
             "against the judge, of premultiplied RGB and coverage. Samples of about {} atoms. cover: coverage, the "
-            "mean of all pixels. map: the color map, with peaks over the scalar; where that leaves less than "
-            "{:.0f} % of a square picture covered, scalars it does not show are given a little opacity (in haze), and "
-            "a scalar that is the same everywhere is replaced by waves.",
+            "mean of all pixels. map: {}.",
             driver_.renderer, driver_.version,
             beside_vtk() ? "; VTK's projected tetrahedra on " + display_->name() : std::string(),
             driver_.software ? "" : " (in frames of their own, which wait for each step)",
-            bench_.options.quick ? quick_havs_sample_atoms : havs_sample_atoms, 100.0 * nearly_empty),
+            bench_.options.quick ? quick_havs_sample_atoms : havs_sample_atoms, volume_map_caption()),
         {}};
   }
 

@@ -9,11 +9,8 @@ namespace atomesh::cli {
 std::optional<BenchScene> havs_bench_scene(RenderBench& bench, const std::string& name) {
   bench.session.progress().stage(name);
   try {
-    BenchScene scene =
-        make_bench_scene(name, bench.options.data, bench.options.quick ? quick_havs_sample_atoms : havs_sample_atoms,
-                         bench.session.progress());
-    show_in_volume(scene, bench.session.progress());
-    return scene;
+    return make_bench_scene(name, bench.options.data, bench.options.quick ? quick_havs_sample_atoms : havs_sample_atoms,
+                            bench.session.progress());
   } catch (const UnavailableError& error) {
     bench.session.note(error.what());
     return std::nullopt;

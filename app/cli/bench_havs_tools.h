@@ -17,7 +17,7 @@ namespace atomesh::cli {
 inline constexpr std::size_t havs_sample_atoms = 20000;
 inline constexpr std::size_t quick_havs_sample_atoms = 2000;  // with --quick
 
-// The data set by name, showing something in mode volume; nothing, and a note, where it cannot be had.
+// The data set by name; nothing, and a note, where it cannot be had.
 std::optional<BenchScene> havs_bench_scene(RenderBench& bench, const std::string& name);
 
 // Of 0.272 "27.2 %".

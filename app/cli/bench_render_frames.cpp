@@ -37,7 +37,7 @@ void first_pictures(RenderBench& bench, const std::string& name, TextTable& tabl
     BenchRow row{"render",
                  name,
                  fmt::format("first picture, {}", mode_name(mode)),
-                 picture_settings(parameters, view.name, camera),
+                 picture_settings(*data, view, parameters, camera),
                  "",
                  times,
                  {},
@@ -67,7 +67,7 @@ void full_frames(RenderBench& bench, const std::string& name, TextTable& table) 
     picture.draw(std::max(5, bench.options.repeats), bench.session, name + ": " + std::string(mode_name(mode)));
     const double rate = 1e3 / picture.total().median;
     BenchRow row = picture_row(name, fmt::format("frames, {}", mode_name(mode)),
-                               picture_settings(parameters, view.name, camera), picture);
+                               picture_settings(*data, view, parameters, camera), picture);
     row.more.insert(row.more.end(), {{"atoms", data->material.atoms.size()}, {"frames_per_second", rate}});
     if (bench.usual_size() && data->material.atoms.size() >= 25'000) {
       row.requirements = {{"frames: a second, of 25,000 atoms at 1280x720", 10.0, true, rate, ""}};

@@ -29,7 +29,7 @@ void bench_render_modes(RenderBench& bench) {
           picture.draw(bench.options.repeats, bench.session, label + ": " + what);
           progress.stage(label + ": the judge");
           const PictureError error = bench.judge.error(label, scene, camera, parameters, picture.image(), progress);
-          BenchRow row = picture_row(label, what, picture_settings(parameters, view.name, camera), picture);
+          BenchRow row = picture_row(label, what, picture_settings(*data, view, parameters, camera), picture);
           set_error(row, error);
           bench.result.add(std::move(row));
           table.row({label, std::string(mode_name(mode)), integrator, milliseconds(picture.total().median),

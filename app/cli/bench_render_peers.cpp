@@ -127,8 +127,8 @@ class PeerTable {
       plot.series[sampled ? 1 : 0].points.push_back(
           {one.picture->total().median, error.max,
            sampled ? std::to_string(one.parameters.samples_per_cell) : integrator_text(one.parameters)});
-      BenchRow& row = rows.emplace_back(
-          picture_row(label_, "volume: " + name, picture_settings(one.parameters, view_->name, camera), *one.picture));
+      BenchRow& row = rows.emplace_back(picture_row(
+          label_, "volume: " + name, picture_settings(*data_, *view_, one.parameters, camera), *one.picture));
       set_error(row, error);
       const Times times = one.picture->total();
       table_.row({label_, name, milliseconds(times.median),

@@ -56,7 +56,7 @@ void bench_render_rates(RenderBench& bench) {
         TimedPicture picture(scene, camera, parameters);
         picture.draw(bench.options.repeats, bench.session, label + ": " + std::string(mode_name(mode)));
         BenchRow row = picture_row(label, "rate, " + std::string(mode_name(mode)),
-                                   picture_settings(parameters, view.name, camera), picture);
+                                   picture_settings(*data, view, parameters, camera), picture);
         row.more.emplace_back("tetrahedra", cells);
         const double required = required_rate(cells);
         if (mode == Mode::volume && required > 0.0 && bench.usual_size() && data->material.mesh.delaunay) {
@@ -115,7 +115,7 @@ void bench_render_threads(RenderBench& bench) {
       const double speedup = one.total().median / many.total().median;
       const std::size_t differing = differing_pixels(one.image(), many.image());
       BenchRow row = picture_row(label, "threads, " + std::string(mode_name(mode)),
-                                 picture_settings(parameters, view.name, camera), many);
+                                 picture_settings(*data, view, parameters, camera), many);
       row.more.insert(row.more.end(), {{"one_thread_ms", one.total().median},
                                        {"speedup", speedup},
                                        {"cpu_ratio", many.total().cpu / one.total().cpu},

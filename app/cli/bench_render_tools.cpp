@@ -66,8 +66,11 @@ std::vector<Parameters> integrator_settings(const Parameters& parameters) {
   return all;
 }
 
-Json picture_settings(const Parameters& parameters, const std::string& view, const Camera& camera) {
-  Json settings = Json::object({{"mode", mode_name(parameters.mode)}, {"view", view}});
+Json picture_settings(const BenchScene& data, const BenchView& view, const Parameters& parameters,
+                      const Camera& camera) {
+  Json settings = Json::object({{"mode", mode_name(parameters.mode)}});
+  if (parameters.mode == Mode::volume) settings.set("map", data.volume_map);
+  settings.set("view", view.name);
   settings.set("projection", parameters.projection == Projection::parallel ? "parallel" : "perspective");
   if (has_integrator(parameters.mode)) {
     settings.set("integrator", integrator_text(parameters));

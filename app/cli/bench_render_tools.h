@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/cli/bench_judge.h"
+#include "app/cli/bench_scenes.h"
 #include "app/cli/bench_tools.h"
 #include "core/camera.h"
 #include "core/image.h"
@@ -66,8 +67,10 @@ bool has_integrator(Mode mode);
 // These parameters with every integrator, and with several numbers of samples; as they are where the mode has none.
 std::vector<Parameters> integrator_settings(const Parameters& parameters);
 
-// {mode, view, projection, integrator, size, threads, renderer}, without the integrator where the mode has none.
-Json picture_settings(const Parameters& parameters, const std::string& view, const Camera& camera);
+// {mode, map, view, projection, integrator, size, threads, renderer}, without the integrator where the mode has none;
+// map, BenchScene::volume_map, is mode volume's alone.
+Json picture_settings(const BenchScene& data, const BenchView& view, const Parameters& parameters,
+                      const Camera& camera);
 
 // A row of suite "render" with the times, steps and rates of `picture`.
 BenchRow picture_row(const std::string& case_name, std::string what, Json settings, const TimedPicture& picture);

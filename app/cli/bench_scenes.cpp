@@ -29,7 +29,7 @@ namespace atomesh::cli {
 namespace {
 
 constexpr double jitter = 0.3;  // of the lattice's step, along each axis
-constexpr float haze = 0.05F;   // opacity of what show_in_volume() no longer leaves transparent
+constexpr float haze = 0.05F;   // opacity of what is no longer left transparent
 constexpr std::string_view waves_name = "waves";
 
 std::vector<BenchSceneInfo> make_table() {
@@ -161,11 +161,47 @@ Material file_material(const BenchSceneInfo& info, const std::string& data_folde
   return material;
 }
 
+// Of a small picture of mode volume from the first view: its mean coverage, and what it would be if all were opaque.
+struct Coverage {
+  double seen, whole;
+};
+Coverage coverage_of(const BenchScene& scene, const Scene& drawn, Progress& progress) {
+  constexpr int side = 64;  // pixels
+  Parameters parameters = scene.seen(scene.views.front(), Mode::volume);
+  const Camera camera = make_camera(parameters, drawn.bounds, side, side);
+  const auto coverage = [&] {
+    RenderStats stats;
+    return mean_coverage(find_renderer("cpu").draw(drawn, camera, parameters, stats, {}, progress));
+  };
+  const double seen = coverage();
+  parameters.volume.color_map = {{{0.0, Vec4f(1.0F)}, {1.0, Vec4f(1.0F)}}};
+  parameters.volume.alpha_length *= 1e6;
+  return {seen, coverage()};
+}
+
+// Where mode volume is nearly empty, lets it show what a user would look at.
+void show_in_volume(BenchScene& scene, Progress& progress) {
+  const Scene drawn = make_scene(scene.material, scene.seen(scene.views.front(), Mode::volume), progress);
+  const Coverage coverage = coverage_of(scene, drawn, progress);
+  if (coverage.seen >= nearly_empty * coverage.whole) return;
+  if (varies(drawn.scalars)) {
+    for (ColorMapEntry& entry : scene.parameters.volume.color_map.entries) {
+      entry.color.a = std::max(entry.color.a, haze);
+    }
+    scene.volume_map = "peaks in haze";
+    return;
+  }
+  add_waves(scene.material);
+  scene.volume_field = waves_name;
+  scene.volume_map = "peaks of waves";
+}
+
 }  // namespace
 
 Parameters BenchScene::seen(const BenchView& view, Mode mode) const {
   Parameters seen = parameters;
   seen.mode = mode;
+  if (mode == Mode::volume && !volume_field.empty()) seen.volume.field = volume_field;
   seen.projection = view.projection;
   set_view(seen, view.direction);
   return seen;
@@ -178,6 +214,15 @@ const std::vector<BenchSceneInfo>& bench_scene_table() {
 
 std::string volume_data_folder(const std::string& folder) {
   return folder.empty() ? "../shared/data/volume" : folder;
+}
+
+std::string volume_map_caption() {
+  return fmt::format(
+      "the color map, with peaks over the scalar; where less than {:.0f} % of the sample would be seen of it, scalars "
+      "it "
+      "does not show are given a little opacity (in haze), and a scalar that is the same everywhere is replaced by "
+      "waves",
+      100.0 * nearly_empty);
 }
 
 BenchScene make_bench_scene(const std::string& name, const std::string& data_folder, std::size_t atoms,
@@ -201,27 +246,8 @@ BenchScene make_bench_scene(const std::string& name, const std::string& data_fol
         info->file.empty() ? sample_material(name, atoms, progress) : file_material(*info, data_folder, progress);
   }
   dress(scene);
+  show_in_volume(scene, progress);
   return scene;
-}
-
-void show_in_volume(BenchScene& scene, Progress& progress) {
-  constexpr int side = 64;  // pixels
-  const Parameters parameters = scene.seen(scene.views.front(), Mode::volume);
-  const Scene drawn = make_scene(scene.material, parameters, progress);
-  const Camera camera = make_camera(parameters, drawn.bounds, side, side);
-  RenderStats stats;
-  const Image picture = find_renderer("cpu").draw(drawn, camera, parameters, stats, {}, progress);
-  if (mean_coverage(picture) >= nearly_empty) return;
-  if (varies(drawn.scalars)) {
-    for (ColorMapEntry& entry : scene.parameters.volume.color_map.entries) {
-      entry.color.a = std::max(entry.color.a, haze);
-    }
-    scene.volume_map = "peaks in haze";
-    return;
-  }
-  add_waves(scene.material);
-  scene.parameters.volume.field = waves_name;
-  scene.volume_map = "peaks of waves";
 }
 
 }  // namespace atomesh::cli

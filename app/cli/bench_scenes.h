@@ -24,9 +24,12 @@ struct BenchScene {
   // that both what lies in front and what lies behind count.
   Parameters parameters;
   std::vector<BenchView> views;
-  // What mode volume shows, for people: "peaks", the colour map with peaks that every data set has; another one where
-  // show_in_volume() took it.
+  // What mode volume shows, for people: "peaks", a colour map with peaks. Where that would leave the picture nearly
+  // empty: defects that are few stand in a crystal that is no longer transparent ("peaks in haze": the peaks, and
+  // opacity 0.05 where the scalar is 0 and wherever they had less); a sample whose scalar is the same everywhere gets
+  // the lattices' smooth one as a field ("peaks of waves").
   std::string volume_map = "peaks";
+  std::string volume_field;  // of the material, that mode volume shows; "": that of all modes
 
   Parameters seen(const BenchView& view, Mode mode) const;
 };
@@ -50,14 +53,11 @@ std::string volume_data_folder(const std::string& folder);
 BenchScene make_bench_scene(const std::string& name, const std::string& data_folder = "", std::size_t atoms = 0,
                             Progress& progress = no_progress());
 
-// Below this mean coverage, a picture of mode volume from the first view is nearly empty, and says nothing about who
-// drew it.
-inline constexpr double nearly_empty = 0.02;
+// Below this mean coverage of what the sample covers when it is opaque, a picture of mode volume from the first view is
+// nearly empty, and says nothing about who drew it.
+inline constexpr double nearly_empty = 0.04;
 
-// Where mode volume is nearly empty, lets it show what a user would look at, and says so in `volume_map`: defects that
-// are few stand in a crystal that is no longer transparent ("peaks in haze": the peaks, and opacity 0.05 where the
-// scalar is 0 and wherever they had less); a sample whose scalar is the same everywhere gets the lattices' smooth one
-// as a field ("peaks of waves").
-void show_in_volume(BenchScene& scene, Progress& progress = no_progress());
+// What BenchScene::volume_map says, for a table's caption; a clause.
+std::string volume_map_caption();
 
 }  // namespace atomesh::cli

@@ -82,6 +82,26 @@ TEST_F(BenchError, EveryModeOfEveryDataSetIsWithinItsLimit) {
   EXPECT_EQ(modes, (std::set<std::string>{"volume", "volume-surface", "surface", "xray"}));
 }
 
+TEST_F(BenchError, VolumesOfSamplesShowSomethingWhateverTheirScalar) {
+  // Many defects; a few; and none (a sample that --quick would make too small).
+  const Outcome outcome = place.run({"bench", "error", "--part", "scenes", "--json", "-", "--size", "64x64", "--case",
+                                     "palladium-hydrogen", "diamond-vacancy", "cacuo2-spiral"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json bench = json::parse(outcome.out);
+  std::map<std::string, std::string> maps;
+  for (const json& row : bench["rows"]) {
+    const std::string name = row["case"];
+    EXPECT_EQ(row["settings"].contains("map"), row["settings"]["mode"] == "volume") << row.dump(1);
+    if (row["settings"]["mode"] != "volume") continue;
+    maps[name.substr(0, name.find(','))] = row["settings"]["map"];
+    EXPECT_GT(row["max_error"], 0.0) << row.dump(1);  // an empty picture has none
+    for (const json& requirement : row["requirements"]) EXPECT_TRUE(requirement["met"]) << row.dump(1);
+  }
+  EXPECT_EQ(maps, (std::map<std::string, std::string>{{"palladium-hydrogen", "peaks"},
+                                                      {"diamond-vacancy", "peaks in haze"},
+                                                      {"cacuo2-spiral", "peaks of waves"}}));
+}
+
 TEST_F(BenchError, HardCasesKeepToWhatIsKnown) {
   std::size_t cases = 0;
   std::size_t inside_out = 0;
