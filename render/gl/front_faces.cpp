@@ -16,9 +16,15 @@ std::int64_t area(const ScreenVertex& a, const ScreenVertex& b, const ScreenVert
   return bx * cy - by * cx;
 }
 
-}  // namespace
+// What is the same all over a cell's picture.
+struct Inside {
+  std::array<float, 4>
+      behind{};        // of each corner's opposite face, at the corner; below 0: the face is seen from the front
+  float slope = 0.0F;  // FaceVertex::slope
+  bool empty = true;
+};
 
-std::size_t front_faces(const std::array<ScreenVertex, 4>& corners, const PixelGrid& grid, FaceVertex* vertices) {
+Inside inside(const std::array<ScreenVertex, 4>& corners) {
   // Of each face, as seen from outside (or from inside all four). With the area as weight of the vertex opposite, sums
   // over the four vertices of what is linear on the screen vanish; of other quantities they are the area times how much
   // the vertex has more than the opposite face there, the same for all four.
@@ -36,15 +42,22 @@ std::size_t front_faces(const std::array<ScreenVertex, 4>& corners, const PixelG
     excess += weight * static_cast<double>(corners[k].u);
     largest = std::max(largest, std::abs(weight * static_cast<double>(corners[k].w)));
   }
+  Inside of;
   // What rounding alone would make; a segment that short adds nothing.
-  if (!(std::abs(volume) > 1e-15 * largest)) return 0;
-  const auto slope = static_cast<float>(excess / volume);
-  std::array<float, 4> behind;  // of each vertex's opposite face, at the vertex
-  for (int k = 0; k < 4; ++k)
-    behind[k] = areas[k] == 0 ? 0.0F : static_cast<float>(-volume / static_cast<double>(areas[k]));
+  if (!(std::abs(volume) > 1e-15 * largest)) return of;
+  of.empty = false;
+  of.slope = static_cast<float>(excess / volume);
+  for (int k = 0; k < 4; ++k) {
+    if (areas[k] != 0) of.behind[k] = static_cast<float>(-volume / static_cast<double>(areas[k]));
+  }
+  return of;
+}
+
+std::size_t write_faces(const std::array<ScreenVertex, 4>& corners, const PixelGrid& grid, const Inside& of,
+                        FaceVertex* vertices) {
   std::size_t count = 0;
   for (int k = 0; k < 4; ++k) {
-    if (!(behind[k] < 0.0F)) continue;
+    if (!(of.behind[k] < 0.0F)) continue;
     const std::array<int, 3>& face = face_corners[k];
     if (!meets_pixel(std::array{corners[face[0]], corners[face[1]], corners[face[2]]}, grid)) continue;
     FaceVertex* triangle = vertices + 3 * count;
@@ -54,15 +67,40 @@ std::size_t front_faces(const std::array<ScreenVertex, 4>& corners, const PixelG
       triangle[n].row = static_cast<float>(corner.row) / subpixels;
       triangle[n].w = corner.w;
       triangle[n].u = corner.u;
-      triangle[n].slope = slope;
+      triangle[n].slope = of.slope;
       for (int m = 0; m < 3; ++m) {
-        const float way = behind[face[m]];
+        const float way = of.behind[face[m]];
         triangle[n].behind[m] = !(way > 0.0F) ? not_behind : n == m ? way : 0.0F;
       }
     }
     ++count;
   }
   return count;
+}
+
+}  // namespace
+
+std::size_t front_faces(const std::array<ScreenVertex, 4>& corners, const PixelGrid& grid, FaceVertex* vertices) {
+  const Inside of = inside(corners);
+  return of.empty ? 0 : write_faces(corners, grid, of, vertices);
+}
+
+FewestFaces fewest_faces(const std::array<ScreenVertex, 4>& corners, const PixelGrid& grid, bool perspective,
+                         FaceVertex* vertices) {
+  Inside of = inside(corners);
+  if (of.empty) return {};
+  const auto front = std::ranges::count_if(of.behind, [](float way) { return way < 0.0F; });
+  const auto back = std::ranges::count_if(of.behind, [](float way) { return way > 0.0F; });
+  if (front <= back) return {write_faces(corners, grid, of, vertices), false};
+  for (float& way : of.behind) way = -way;
+  std::array<ScreenVertex, 4> mirrored = corners;
+  for (ScreenVertex& corner : mirrored) {
+    corner.w = -corner.w;
+    // The scalar is -u / w, or u.
+    if (perspective) corner.u = -corner.u;
+  }
+  if (!perspective) of.slope = -of.slope;
+  return {write_faces(mirrored, grid, of, vertices), true};
 }
 
 }  // namespace atomesh::gl

@@ -31,4 +31,14 @@ inline constexpr std::size_t most_faces = 3;  // of a cell
 // exact integers; it does not matter which way round the cell is (moved vertices may turn it over).
 std::size_t front_faces(const std::array<ScreenVertex, 4>& corners, const PixelGrid& grid, FaceVertex* vertices);
 
+// For what of a segment does not depend on which of its ends is nearer: the faces of that side of the cell, front or
+// back, that has fewer. Those of the back are the front faces of the mirrored cell, which has every w, and u of
+// perspective projection, with the other sign: what is linear along a ray remains so, and so do scalars.
+struct FewestFaces {
+  std::size_t count = 0;  // up to 2
+  bool mirrored = false;
+};
+FewestFaces fewest_faces(const std::array<ScreenVertex, 4>& corners, const PixelGrid& grid, bool perspective,
+                         FaceVertex* vertices);
+
 }  // namespace atomesh::gl

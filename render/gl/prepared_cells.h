@@ -41,9 +41,10 @@ class PreparedCells {
 
   // Places of the order; there may be fewer cells.
   virtual std::size_t places() const = 0;
-  // The slab with the place `begin`: its triangles are made; false where they are there already. Then draws it, or of
-  // it some places from `begin` on; a vertex array is bound whose attributes 0 to 2 are the cells', and `use` makes a
-  // program current: cells.vert's, or, for cells whose light is a sum of ramps (map_ramps.h), ramp_cells.vert's.
+  // The slab with the place `begin`: its triangles are made; false where they are there already, or made by draw().
+  // Then draws it, or of it some places from `begin` on; a vertex array is bound whose attributes 0 to 2 are the
+  // cells', and `use` makes a program current: cells.vert's, or, for cells whose light is a sum of ramps (map_ramps.h),
+  // ramp_cells.vert's.
   virtual bool make_slab(std::size_t begin) = 0;
   // Returns how many: about `most`, at least one, not beyond the slab.
   using UseProgram = std::function<void(bool ramps)>;
@@ -51,9 +52,9 @@ class PreparedCells {
   static std::size_t slab_end(std::size_t begin, std::size_t places) {
     return std::min(begin - begin % cells_per_slab + cells_per_slab, places);
   }
-  // Before make_slab(): whether cells are drawn as sums of ramps of this map where they suit it. Only cells that the
-  // processor prepares are.
-  virtual void use_ramps(const ColorMap& /*color_map*/, double /*alpha_length*/) {}
+  // Before make_slab(): whether cells are drawn as sums of ramps of this map where they suit it; `rays_end`: something
+  // opaque may end rays within cells. Only cells that the processor prepares for software are.
+  virtual void use_ramps(const ColorMap& /*color_map*/, double /*alpha_length*/, bool /*rays_end*/) {}
   virtual void use_no_ramps() {}
   // Whether draw_outside() shows all there is to see of a wrong order: faces of which each has to lie behind the one
   // before, as far as the order is right. A vertex array is bound whose attribute 0 is theirs, for cells.vert.

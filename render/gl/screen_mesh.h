@@ -115,6 +115,7 @@ class ScreenMesh {
   static bool is_clipped(const ScreenVertex& vertex) { return vertex.column == clipped; }
   // Parts from here on are pieces.
   std::size_t cells_of_scene() const { return scene_.tetrahedra.size(); }
+  std::size_t parts_end() const { return cells_of_scene() + pieces_.size(); }
   // Corners of a part, oriented like those of the cell.
   std::array<ScreenVertex, 4> corners(Index part) const {
     if (part >= scene_.tetrahedra.size()) return pieces_[part - scene_.tetrahedra.size()];

@@ -325,7 +325,7 @@ void Volume::clear(const Begun& begun) {
   choose_programs(make_table(begun.parameters), !begun.ray_ends.empty());
   if (by_ramps(begun.parameters)) {
     if (!blend_ramps_.perspective) blend_ramps_ = make_programs("ramp_cells.vert", "blend.frag", {"RAMPS"});
-    cells_->use_ramps(begun.parameters.volume.color_map, begun.parameters.volume.alpha_length);
+    cells_->use_ramps(begun.parameters.volume.color_map, begun.parameters.volume.alpha_length, !begun.ray_ends.empty());
   } else {
     cells_->use_no_ramps();
   }

@@ -30,7 +30,7 @@ struct VolumeStats {
   std::size_t ramp_triangles = 0;  // of these, what is drawn as a sum of ramps (map_ramps.h)
   double project_ms = 0.0;         // vertices, which cells
   double order_ms = 0.0;
-  double faces_ms = 0.0;  // front faces, handed to OpenGL
+  double faces_ms = 0.0;  // front faces, handed to OpenGL; software's are part of the next
   double draw_ms = 0.0;   // OpenGL
   RepairStats repair;     // of pixels whose cells came in a wrong order
   // Prepared by the card; the first three times are then of what is asked of it, and the fourth has its work.

@@ -13,8 +13,8 @@ layout(binding = 9) uniform sampler2D ray_ends;  // w where something opaque end
 
 vec4 cell_light() {
   float w = way_at.x;
-  // Never farther than the farthest vertex, as in cell_segment.glsl.
-  float way = most(least(least(least(entry_at.y, entry_at.z), entry_at.w), along.z - w), 0.0);
+  // Never longer than the cell allows: far outside of thin triangles rounding makes anything.
+  float way = most(least(least(least(entry_at.y, entry_at.z), entry_at.w), along.z), 0.0);
 #ifdef RAY_ENDS
   way = least(most(texelFetch(ray_ends, ivec2(gl_FragCoord.xy), 0).x - w, 0.0), way);
 #endif

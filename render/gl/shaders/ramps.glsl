@@ -37,9 +37,6 @@ vec4 ramps_light(float near_scalar, float far_scalar, float zero, float length) 
   float scale = length * (0.5 / half_width);
   // (1 - e^-depth) / depth, by its series: to 2e-4 where depth <= 1, and it is no more but for rounding
   float depth = scale * linear.a;
-  float bound = 1.0 / most(depth, 1.0);
-  scale *= bound;
-  depth *= bound;
   float depth_square = depth * depth;
   float through = (1.0 - depth * (1.0 / 2.0)) +
                   depth_square * ((1.0 / 6.0 - depth * (1.0 / 24.0)) +

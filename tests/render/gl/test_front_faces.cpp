@@ -106,6 +106,43 @@ TEST(FrontFaces, PeakAwayFromTheEyeHasOne) {
   EXPECT_NEAR(half[0].far_u, 1.5, 1e-6);
 }
 
+// Drawn by its one back face: the same segments from their other ends.
+TEST(FrontFaces, PeakTowardsTheEyeIsOneFaceOfTheMirroredCell) {
+  const Corners cell{at(-12, -12, -1.0F, 0.5F), at(12, -12, -1.0F, 0.5F), at(0, 24, -1.0F, 0.5F),
+                     at(0, 0, -2.0F, 0.5F)};
+  for (const bool perspective : {false, true}) {
+    std::array<FaceVertex, 3 * most_faces> t;
+    const FewestFaces faces = fewest_faces(cell, small_grid, perspective, t.data());
+    ASSERT_EQ(faces.count, 1U);
+    EXPECT_TRUE(faces.mirrored);
+    std::array<double, 3> weight;
+    ASSERT_TRUE(covers(t.data(), 0.0, -6.0, weight));
+    double way = not_behind;
+    for (std::size_t m = 0; m < 3; ++m) {
+      way = std::min(way, weight[0] * t[0].behind[m] + weight[1] * t[1].behind[m] + weight[2] * t[2].behind[m]);
+    }
+    EXPECT_NEAR(way, 0.5, 1e-6);
+    EXPECT_EQ(t[0].w, 1.0F);
+    EXPECT_EQ(t[0].u, perspective ? -0.5F : 0.5F);
+    // Where the ray enters w is -1.5, and the scalar what it is in the cell as it stands.
+    const std::vector<Hit> front = hits(cell, 0.0, -6.0);
+    ASSERT_EQ(front.size(), 1U);
+    EXPECT_NEAR(-(t[0].w + way), front[0].w, 1e-6);
+    EXPECT_NEAR((perspective ? -1.0 : 1.0) * (t[0].u + way * t[0].slope), front[0].u, 1e-6);
+  }
+}
+
+// Where the back has as many faces or more it is the front.
+TEST(FrontFaces, PeakAwayFromTheEyeIsNotMirrored) {
+  const Corners cell{at(-12, -12, 1.0F, 2.0F), at(12, -12, 1.0F, 2.0F), at(0, 24, 1.0F, 2.0F), at(0, 0, 3.0F, 1.0F)};
+  std::array<FaceVertex, 3 * most_faces> fewest;
+  std::array<FaceVertex, 3 * most_faces> front;
+  const FewestFaces faces = fewest_faces(cell, small_grid, true, fewest.data());
+  EXPECT_FALSE(faces.mirrored);
+  ASSERT_EQ(faces.count, front_faces(cell, small_grid, front.data()));
+  for (std::size_t i = 0; i < 3 * faces.count; ++i) EXPECT_EQ(fewest[i].w, front[i].w);
+}
+
 TEST(FrontFaces, CrossedEdgesHaveTwo) {
   // The near edge runs along the columns at depth 1, the far one along the rows at depth 4.
   const Corners cell{at(-16, 0, 1.0F), at(16, 0, 1.0F), at(0, -16, 4.0F), at(0, 16, 4.0F)};

@@ -307,7 +307,9 @@ TEST_F(DebugVolume, TimedStepsMakeTheSamePicture) {
     EXPECT_LE(compare_images(volume.read(), whole).max, on_card ? 2e-3 : 0.0);
     EXPECT_GT(volume.last().project_ms, 0.0);
     EXPECT_GT(volume.last().order_ms, 0.0);
-    EXPECT_GT(volume.last().faces_ms, 0.0);
+    // Software gets the processor's faces in portions while it draws.
+    const bool portions = !on_card && gl::current_driver().software;
+    EXPECT_EQ(volume.last().faces_ms > 0.0, !portions);
   }
 }
 
