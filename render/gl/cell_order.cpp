@@ -195,55 +195,60 @@ void CellOrder::find_outside(Progress& progress) {
 }
 
 // After order_by_faces(), when rank_ has each cell's place.
-void CellOrder::order_outside(const Camera& camera) {
+void CellOrder::order_outside(const Camera& camera, const Progress& progress) {
   const FaceSides sides(camera, scene_);
   keyed_.resize(outside_.size());
   parallel_for(outside_.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     for (std::size_t i = begin; i < end; ++i) {
       const auto [cell, face] = outside_[i];
       const bool front = (sides.fronts_of(cell) >> face & 1U) != 0;
       keyed_[i] = {2U * rank_[cell] + (front ? 0U : 1U), static_cast<Index>(i)};
     }
   });
-  sort_by_key(keyed_, scratch_);
+  sort_by_key(keyed_, scratch_, progress);
   outside_in_order_.resize(outside_.size());
   std::ranges::transform(keyed_, outside_in_order_.begin(), [&](const KeyedCell& k) { return outside_[k.cell]; });
 }
 
 void CellOrder::sort(const Camera& camera, std::span<const Index> cells, std::span<const Index> unseen,
-                     std::vector<Index>& order, CellOrderStats& stats) {
+                     std::vector<Index>& order, CellOrderStats& stats, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
+  outside_in_order_.clear();
   if (!by_faces()) unseen = {};
   const KeyScale scale = key_scale(camera, scene_);
   keyed_.resize(cells.size() + unseen.size());
   const auto add_keys = [&](std::span<const Index> of, KeyedCell* keyed) {
     parallel_for(of.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
+      progress.check();
       for (std::size_t i = begin; i < end; ++i) keyed[i] = {key_of(scale, points_[of[i]]), of[i]};
     });
   };
   add_keys(cells, keyed_.data());
   add_keys(unseen, keyed_.data() + cells.size());
-  sort_by_key(keyed_, scratch_);
+  sort_by_key(keyed_, scratch_, progress);
   order.resize(cells.size());
   if (!by_faces()) std::ranges::transform(keyed_, order.begin(), &KeyedCell::cell);
   stats.keys_ms += ms_since(start);
-  if (by_faces()) order_by_faces(camera, cells, unseen, order, stats);
+  if (by_faces()) order_by_faces(camera, cells, unseen, order, stats, progress);
 }
 
 // In the order of their keys cells are drawn, each after those before its faces: depth first. A cell that by the keys
 // comes after all of those needs no look at them unless another one calls for it before its turn; in a Delaunay mesh
 // nearly all are so.
 void CellOrder::order_by_faces(const Camera& camera, std::span<const Index> cells, std::span<const Index> unseen,
-                               std::vector<Index>& order, CellOrderStats& stats) {
+                               std::vector<Index>& order, CellOrderStats& stats, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   rank_.assign(neighbours_.size(), no_index);
   parallel_for(keyed_.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     for (std::size_t i = begin; i < end; ++i) rank_[keyed_[i].cell] = static_cast<Index>(i);
   });
   state_.resize(neighbours_.size());
   const FaceSides sides(camera, scene_);
   const auto look = [&](std::span<const Index> at, unsigned kind) {
     parallel_for(at.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
+      progress.check();
       for (std::size_t i = begin; i < end; ++i) {
         const Index cell = at[i];
         const unsigned fronts = sides.fronts_of(cell);
@@ -266,6 +271,7 @@ void CellOrder::order_by_faces(const Camera& camera, std::span<const Index> cell
     if ((state_[cell] & hidden) == 0) order[drawn++] = cell;
     state_[cell] = 0;
     rank_[cell] = rank++;
+    if (rank % cells_per_range == 0) progress.check();
   };
   for (const KeyedCell& next : keyed_) {
     const unsigned state = state_[next.cell];
@@ -290,9 +296,8 @@ void CellOrder::order_by_faces(const Camera& camera, std::span<const Index> cell
       if ((state_[before] & (open | waiting)) == waiting) path_.push_back(before);
     }
   }
-  outside_in_order_.clear();
   const bool all = rank == neighbours_.size();
-  if (all && stats.circles == circles_before && !outside_.empty()) order_outside(camera);
+  if (all && stats.circles == circles_before && !outside_.empty()) order_outside(camera, progress);
   stats.faces_ms += ms_since(start);
 }
 

@@ -61,9 +61,9 @@ class CellOrder {
 
   // The cells (indices into Scene::tetrahedra, each at most once) front to back. Adds to `stats`. Not for two threads
   // at once. `unseen`: other cells that are not drawn, but may lie between those that are (transparent ones): the order
-  // by faces is found across them.
+  // by faces is found across them. Throws CancelledError; outside() is then empty.
   void sort(const Camera& camera, std::span<const Index> cells, std::span<const Index> unseen,
-            std::vector<Index>& order, CellOrderStats& stats);
+            std::vector<Index>& order, CellOrderStats& stats, const Progress& progress = no_progress());
 
   std::span<const OrderPoint> points() const { return points_; }
   bool by_faces() const { return !neighbours_.empty(); }
@@ -76,9 +76,9 @@ class CellOrder {
 
  private:
   void order_by_faces(const Camera& camera, std::span<const Index> cells, std::span<const Index> unseen,
-                      std::vector<Index>& order, CellOrderStats& stats);
+                      std::vector<Index>& order, CellOrderStats& stats, const Progress& progress);
   void find_outside(Progress& progress);
-  void order_outside(const Camera& camera);
+  void order_outside(const Camera& camera, const Progress& progress);
 
   const Scene& scene_;
   std::vector<OrderPoint> points_;

@@ -15,7 +15,7 @@ constexpr std::size_t least_block = 1 << 14;  // cells; below it counting digits
 
 }  // namespace
 
-void sort_by_key(std::vector<KeyedCell>& cells, std::vector<KeyedCell>& scratch) {
+void sort_by_key(std::vector<KeyedCell>& cells, std::vector<KeyedCell>& scratch, const Progress& progress) {
   const std::size_t count = cells.size();
   scratch.resize(count);
   // One block a thread, so that the places of digits are few.
@@ -23,6 +23,7 @@ void sort_by_key(std::vector<KeyedCell>& cells, std::vector<KeyedCell>& scratch)
   const std::size_t block_size = (count + blocks - 1) / blocks;
   std::vector<std::array<std::uint32_t, digit_values>> places(blocks);
   for (int shift = 0; shift < 32; shift += digit_bits) {
+    progress.check();
     parallel_for(count, block_size, [&](std::size_t begin, std::size_t end) {
       std::array<std::uint32_t, digit_values>& counts = places[begin / block_size];
       counts.fill(0);
@@ -38,6 +39,7 @@ void sort_by_key(std::vector<KeyedCell>& cells, std::vector<KeyedCell>& scratch)
     }
     parallel_for(count, block_size, [&](std::size_t begin, std::size_t end) {
       std::array<std::uint32_t, digit_values>& next = places[begin / block_size];
+      progress.check();
       for (std::size_t i = begin; i < end; ++i) scratch[next[cells[i].key >> shift & digit_mask]++] = cells[i];
     });
     cells.swap(scratch);

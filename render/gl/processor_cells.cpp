@@ -101,7 +101,7 @@ void ProcessorCells::order(const Camera& camera, Progress& progress) {
   CellOrderStats order_stats;
   const std::vector<Index> unseen =
       order_->by_faces() ? cells_beside(mesh_->cells(), scene_.tetrahedra.size()) : std::vector<Index>();
-  order_->sort(camera, mesh_->cells(), unseen, order, order_stats);
+  order_->sort(camera, mesh_->cells(), unseen, order, order_stats, progress);
   parts_ = mesh_->parts(order);
   cells_ = order.size();
   const std::size_t slabs = (parts_.size() + cells_per_slab - 1) / cells_per_slab;

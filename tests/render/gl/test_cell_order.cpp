@@ -1,13 +1,19 @@
 // The order of cells: sorting by keys, and no cell before one that hides it.
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <time.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <thread>
 
+#include "core/error.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "render/gl/cell_order.h"
 #include "tests/render/fixtures.h"
 
@@ -357,6 +363,74 @@ TEST(CellOrder, IsTheSameOnAnyNumberOfThreads) {
     cell_order.sort(camera_of(scene, views[3]), all_cells(scene), {}, order, stats);
     if (expected.empty()) expected = order;
     EXPECT_EQ(order, expected) << count;
+  }
+  set_threads(0);
+}
+
+// Of a thread, ms: what others do on the machine does not count.
+double cpu_ms(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+// Cancelled at any time it ends soon; the next order is the right one.
+TEST(CellOrder, IsCancelledInTheMiddle) {
+  Scene scene = volume_scene(box_material(40, 40, 40, 2.0, shaking(0.3, 5)));
+  scene.delaunay = false;  // looking behind faces then takes longer
+  const Camera camera = camera_of(scene, views[3]);
+  const std::vector<Index> cells = all_cells(scene);
+  set_threads(1);
+  for (const bool by_faces : {false, true}) {
+    CellOrder cell_order(scene, by_faces);
+    CellOrderStats stats;
+    std::vector<Index> expected;
+    double whole = 1e300;
+    for (int i = 0; i < 5; ++i) {
+      const double start = cpu_ms();
+      cell_order.sort(camera, cells, {}, expected, stats);
+      whole = std::min(whole, cpu_ms() - start);
+    }
+    EXPECT_EQ(cell_order.outside().empty(), !by_faces);
+    // A pass over all the keys is not divided.
+    const double most = (by_faces ? 0.1 : 0.25) * whole;
+    // Where it was when it ended: from none of these to the next is a long way.
+    std::vector<double> ends{0.0, whole};
+    double longest = whole;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> part(0.0, 1.0);
+    for (int i = 0; i < 1000 && longest > most; ++i) {
+      Progress progress;
+      clockid_t clock = 0;
+      pthread_getcpuclockid(pthread_self(), &clock);
+      const double start = cpu_ms();
+      std::atomic<bool> over{false};
+      std::thread canceller([&, at = start + part(random) * whole] {
+        while (!over && cpu_ms(clock) < at) std::this_thread::yield();
+        progress.request_cancel();
+      });
+      std::vector<Index> order;
+      double end = 0.0;
+      try {
+        cell_order.sort(camera, cells, {}, order, stats, progress);
+      } catch (const CancelledError&) {
+        end = cpu_ms() - start;
+      }
+      over = true;
+      canceller.join();
+      if (end == 0.0) continue;  // it was quick
+      EXPECT_TRUE(cell_order.outside().empty());
+      ends.push_back(end);
+      std::ranges::sort(ends);
+      longest = ends.front();
+      for (std::size_t n = 1; n < ends.size() && ends[n - 1] < whole; ++n) {
+        longest = std::max(longest, std::min(ends[n], whole) - ends[n - 1]);
+      }
+    }
+    EXPECT_LE(longest, most) << (by_faces ? "by faces" : "by keys");
+    std::vector<Index> order;
+    cell_order.sort(camera, cells, {}, order, stats);
+    EXPECT_EQ(order, expected);
   }
   set_threads(0);
 }
