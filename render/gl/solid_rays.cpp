@@ -40,19 +40,18 @@ std::optional<SolidRays> SolidDrawing::proceed(const std::shared_ptr<const Scene
                                                double milliseconds, Progress& progress) {
   if (!std::isfinite(milliseconds)) return draw(*solids, view, progress);
   progress.check();
+  const auto start = std::chrono::steady_clock::now();
   const bool ours =
       beside_.started() && !beside_.cancelled() && task_.solids == solids && same_solids(task_.view, view);
   if (!ours) {
     // What is given up comes to its end first.
-    if (!beside_.over(milliseconds)) {
-      beside_.cancel();
-      return std::nullopt;
-    }
+    beside_.cancel();
+    if (!beside_.over(milliseconds)) return std::nullopt;
     beside_.give_up();
     task_ = {.solids = solids, .view = view, .rays = {}};
     beside_.start([this](Progress& own) { task_.rays = draw_now(*task_.solids, task_.view, own); });
   }
-  if (!beside_.over(milliseconds)) return std::nullopt;
+  if (!beside_.over(milliseconds - ms_since(start))) return std::nullopt;
   beside_.take();
   return std::exchange(task_, {}).rays;
 }
