@@ -4,8 +4,10 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "render/gl/context.h"
@@ -257,6 +259,45 @@ TEST_P(FinishedVolume, IsTheSameInSlicesOfTime) {
   EXPECT_TRUE(picture.proceed(1.0));
   subject.camera.width = 0;
   EXPECT_THROW(picture.begin(subject.camera, subject.parameters), UsageError);
+}
+
+// A thread of its own looks at the scene, which nobody else keeps. (One that looks too long is told of by the address
+// sanitizer.)
+TEST_P(FinishedVolume, MayGoWhileItsSceneIsLookedAt) {
+  Subject subject = subject_of(GetParam(), 400, 300);
+  subject.material = test::box_material(36, 36, 36, 2.0, test::shaking(0.3, 5));
+  test::add_defects(subject.material, 3);
+  const Subject other = subject_of(GetParam(), 40, 30);
+  const Image expected = rendered("havs", other);
+  for (const VolumeSolid solid : {VolumeSolid::none, VolumeSolid::atoms}) {
+    subject.parameters.volume.solid = solid;
+    subject.scene = make_scene(subject.material, subject.parameters);
+    subject.camera = make_camera(subject.parameters, subject.scene.bounds, 400, 300);
+    enum class End { destroyed, other_scene, other_picture };
+    for (const End end : {End::destroyed, End::other_scene, End::other_picture}) {
+      for (const int calls : {2, 3, 6}) {
+        std::optional<VolumePicture> picture(std::in_place);
+        std::shared_ptr<const Scene> scene = scene_of(subject);
+        const std::weak_ptr<const Scene> watched = scene;
+        picture->set_scene(std::exchange(scene, nullptr));
+        picture->begin(subject.camera, subject.parameters);
+        for (int i = 0; i < calls; ++i) ASSERT_FALSE(picture->proceed(0.0)) << calls;
+        ASSERT_FALSE(watched.expired());
+        if (end == End::destroyed) {
+          picture.reset();
+          EXPECT_TRUE(watched.expired());
+          continue;
+        }
+        if (end == End::other_picture) {
+          picture->begin(other.camera, subject.parameters, {.stride = 8});
+          picture->proceed(0.0);
+        }
+        picture->set_scene(scene_of(other));
+        EXPECT_TRUE(watched.expired());
+        EXPECT_LE(compare_images(drawn(*picture, other), expected).max, 1e-5);
+      }
+    }
+  }
 }
 
 TEST_P(FinishedVolume, OfFewRaysIsNearTheWhole) {
