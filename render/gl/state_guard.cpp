@@ -10,43 +10,87 @@ GLint integer(GLenum name) {
   return value;
 }
 
-// A buffer that was bound may be gone: deleted by a context that shares its objects, or only kept by being bound.
+GLint integer_at(GLenum name, GLuint place) {
+  GLint value = 0;
+  glGetIntegeri_v(name, place, &value);
+  return value;
+}
+
+// For names of objects and of constants.
+GLuint unsigned_of(GLint value) {
+  return static_cast<GLuint>(value);
+}
+
+// What was bound may be gone: deleted by a context that shares its objects, or only kept by being bound.
+template <class Is>
+GLuint living(GLint value, Is&& is) {
+  return value != 0 && is(unsigned_of(value)) == GL_TRUE ? unsigned_of(value) : 0;
+}
 GLuint living_buffer(GLint value) {
-  return value != 0 && glIsBuffer(static_cast<GLuint>(value)) == GL_TRUE ? static_cast<GLuint>(value) : 0;
+  return living(value, [](GLuint n) { return glIsBuffer(n); });
+}
+GLuint living_texture(GLint value) {
+  return living(value, [](GLuint n) { return glIsTexture(n); });
+}
+
+struct PlaceNames {
+  GLenum target, buffer, start, size;
+};
+constexpr PlaceNames storage_names{GL_SHADER_STORAGE_BUFFER, GL_SHADER_STORAGE_BUFFER_BINDING,
+                                   GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE};
+constexpr PlaceNames uniform_names{GL_UNIFORM_BUFFER, GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START,
+                                   GL_UNIFORM_BUFFER_SIZE};
+
+BufferPlace buffer_at(const PlaceNames& names, GLuint place) {
+  BufferPlace found;
+  found.buffer = integer_at(names.buffer, place);
+  glGetInteger64i_v(names.start, place, &found.start);
+  glGetInteger64i_v(names.size, place, &found.size);
+  return found;
+}
+
+void bind_at(const PlaceNames& names, GLuint place, const BufferPlace& was) {
+  const GLuint buffer = living_buffer(was.buffer);
+  if (buffer != 0 && was.size != 0) {
+    glBindBufferRange(names.target, place, buffer, static_cast<GLintptr>(was.start), static_cast<GLsizeiptr>(was.size));
+  } else {
+    glBindBufferBase(names.target, place, buffer);
+  }
+}
+
+void turn(GLenum what, bool on) {
+  (on ? glEnable : glDisable)(what);
 }
 
 }  // namespace
 
 StorageGuard::StorageGuard() : buffer_(integer(GL_SHADER_STORAGE_BUFFER_BINDING)) {
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const auto n = static_cast<GLuint>(i);
-    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, n, &places_[i].buffer);
-    glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, n, &places_[i].start);
-    glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, n, &places_[i].size);
-  }
+  for (std::size_t i = 0; i < places_.size(); ++i) places_[i] = buffer_at(storage_names, static_cast<GLuint>(i));
 }
 
 StorageGuard::~StorageGuard() {
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Place& place = places_[i];
-    const auto n = static_cast<GLuint>(i);
-    const GLuint buffer = living_buffer(place.buffer);
-    if (buffer != 0 && place.size != 0) {
-      glBindBufferRange(GL_SHADER_STORAGE_BUFFER, n, buffer, static_cast<GLintptr>(place.start),
-                        static_cast<GLsizeiptr>(place.size));
-    } else {
-      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, n, buffer);
-    }
-  }
+  for (std::size_t i = 0; i < places_.size(); ++i) bind_at(storage_names, static_cast<GLuint>(i), places_[i]);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, living_buffer(buffer_));
 }
 
-StateGuard::StateGuard() {
+void StateGuard::save_fragment_tests() {
   for (std::size_t i = 0; i < switches_.size(); ++i) enabled_[i] = glIsEnabled(switches_[i]) == GL_TRUE;
-  active_texture_ = integer(GL_ACTIVE_TEXTURE);
-  for (std::size_t i = 0; i < units_.size(); ++i) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-    units_[i] = {integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_3D), integer(GL_TEXTURE_BINDING_BUFFER)};
+  for (std::size_t i = 0; i < viewports_.size(); ++i) {
+    const auto n = static_cast<GLuint>(i);
+    Viewport& viewport = viewports_[i];
+    glGetFloati_v(GL_VIEWPORT, n, viewport.rectangle.data());
+    glGetIntegeri_v(GL_SCISSOR_BOX, n, viewport.scissor.data());
+    glGetDoublei_v(GL_DEPTH_RANGE, n, viewport.depths.data());
+    viewport.scissored = glIsEnabledi(GL_SCISSOR_TEST, n);
+  }
+  for (std::size_t i = 0; i < draw_buffers_.size(); ++i) {
+    const auto n = static_cast<GLuint>(i);
+    DrawBuffer& buffer = draw_buffers_[i];
+    buffer.functions = {integer_at(GL_BLEND_SRC_RGB, n), integer_at(GL_BLEND_DST_RGB, n),
+                        integer_at(GL_BLEND_SRC_ALPHA, n), integer_at(GL_BLEND_DST_ALPHA, n)};
+    buffer.equations = {integer_at(GL_BLEND_EQUATION_RGB, n), integer_at(GL_BLEND_EQUATION_ALPHA, n)};
+    glGetBooleani_v(GL_COLOR_WRITEMASK, n, buffer.mask.data());
+    buffer.blended = glIsEnabledi(GL_BLEND, n);
   }
   stencil_[0] = {integer(GL_STENCIL_FUNC),           integer(GL_STENCIL_REF),  integer(GL_STENCIL_VALUE_MASK),
                  integer(GL_STENCIL_WRITEMASK),      integer(GL_STENCIL_FAIL), integer(GL_STENCIL_PASS_DEPTH_FAIL),
@@ -55,76 +99,98 @@ StateGuard::StateGuard() {
                  integer(GL_STENCIL_BACK_VALUE_MASK),     integer(GL_STENCIL_BACK_WRITEMASK),
                  integer(GL_STENCIL_BACK_FAIL),           integer(GL_STENCIL_BACK_PASS_DEPTH_FAIL),
                  integer(GL_STENCIL_BACK_PASS_DEPTH_PASS)};
-  glGetIntegerv(GL_VIEWPORT, viewport_.data());
-  glGetIntegerv(GL_SCISSOR_BOX, scissor_.data());
-  blend_functions_ = {integer(GL_BLEND_SRC_RGB), integer(GL_BLEND_DST_RGB), integer(GL_BLEND_SRC_ALPHA),
-                      integer(GL_BLEND_DST_ALPHA)};
-  blend_equations_ = {integer(GL_BLEND_EQUATION_RGB), integer(GL_BLEND_EQUATION_ALPHA)};
-  glGetBooleanv(GL_COLOR_WRITEMASK, color_mask_.data());
-  glGetFloatv(GL_COLOR_CLEAR_VALUE, clear_color_.data());
-  glGetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
-  clear_stencil_ = integer(GL_STENCIL_CLEAR_VALUE);
   depth_function_ = integer(GL_DEPTH_FUNC);
-  glGetFloatv(GL_DEPTH_RANGE, depth_range_.data());
   glGetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
+}
+
+void StateGuard::restore_fragment_tests() const {
+  for (std::size_t i = 0; i < switches_.size(); ++i) turn(switches_[i], enabled_[i]);
+  for (std::size_t i = 0; i < viewports_.size(); ++i) {
+    const auto n = static_cast<GLuint>(i);
+    const Viewport& viewport = viewports_[i];
+    glViewportIndexedfv(n, viewport.rectangle.data());
+    glScissorIndexedv(n, viewport.scissor.data());
+    glDepthRangeIndexed(n, viewport.depths[0], viewport.depths[1]);
+    (viewport.scissored == GL_TRUE ? glEnablei : glDisablei)(GL_SCISSOR_TEST, n);
+  }
+  for (std::size_t i = 0; i < draw_buffers_.size(); ++i) {
+    const auto n = static_cast<GLuint>(i);
+    const DrawBuffer& buffer = draw_buffers_[i];
+    glBlendFuncSeparatei(n, unsigned_of(buffer.functions[0]), unsigned_of(buffer.functions[1]),
+                         unsigned_of(buffer.functions[2]), unsigned_of(buffer.functions[3]));
+    glBlendEquationSeparatei(n, unsigned_of(buffer.equations[0]), unsigned_of(buffer.equations[1]));
+    glColorMaski(n, buffer.mask[0], buffer.mask[1], buffer.mask[2], buffer.mask[3]);
+    (buffer.blended == GL_TRUE ? glEnablei : glDisablei)(GL_BLEND, n);
+  }
+  for (std::size_t i = 0; i < stencil_.size(); ++i) {
+    const StencilSide& side = stencil_[i];
+    const GLenum face = i == 0 ? GL_FRONT : GL_BACK;
+    glStencilFuncSeparate(face, unsigned_of(side.function), side.reference, unsigned_of(side.compare_mask));
+    glStencilMaskSeparate(face, unsigned_of(side.write_mask));
+    glStencilOpSeparate(face, unsigned_of(side.fail), unsigned_of(side.depth_fail), unsigned_of(side.pass));
+  }
+  glDepthFunc(unsigned_of(depth_function_));
+  glDepthMask(depth_mask_);
+}
+
+StateGuard::StateGuard() {
+  save_fragment_tests();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    in_the_way_[i] = glIsEnabled(obstacles[i]) == GL_TRUE;
+    if (in_the_way_[i]) glDisable(obstacles[i]);
+  }
+  glGetIntegerv(GL_POLYGON_MODE, polygon_mode_.data());
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  active_texture_ = integer(GL_ACTIVE_TEXTURE);
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+    units_[i] = {integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_3D), integer(GL_TEXTURE_BINDING_BUFFER),
+                 integer(GL_SAMPLER_BINDING)};
+    glBindSampler(static_cast<GLuint>(i), 0);
+  }
+  // Textures are made at the unit that is active: it has to be one of these.
+  glActiveTexture(GL_TEXTURE0);
+  image_ = {integer_at(GL_IMAGE_BINDING_NAME, 0),    integer_at(GL_IMAGE_BINDING_LEVEL, 0),
+            integer_at(GL_IMAGE_BINDING_LAYERED, 0), integer_at(GL_IMAGE_BINDING_LAYER, 0),
+            integer_at(GL_IMAGE_BINDING_ACCESS, 0),  integer_at(GL_IMAGE_BINDING_FORMAT, 0)};
   draw_framebuffer_ = integer(GL_DRAW_FRAMEBUFFER_BINDING);
   read_framebuffer_ = integer(GL_READ_FRAMEBUFFER_BINDING);
   program_ = integer(GL_CURRENT_PROGRAM);
   vertex_array_ = integer(GL_VERTEX_ARRAY_BINDING);
-  array_buffer_ = integer(GL_ARRAY_BUFFER_BINDING);
-  indirect_buffer_ = integer(GL_DRAW_INDIRECT_BUFFER_BINDING);
-  pack_buffer_ = integer(GL_PIXEL_PACK_BUFFER_BINDING);
-  pack_alignment_ = integer(GL_PACK_ALIGNMENT);
-  unpack_buffer_ = integer(GL_PIXEL_UNPACK_BUFFER_BINDING);
-  unpack_alignment_ = integer(GL_UNPACK_ALIGNMENT);
-  unpack_row_length_ = integer(GL_UNPACK_ROW_LENGTH);
+  block_ = buffer_at(uniform_names, uniform_block);
+  for (std::size_t i = 0; i < buffers_.size(); ++i) buffers_[i] = integer(buffer_targets[i][1]);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  for (std::size_t i = 0; i < pixel_stores.size(); ++i) {
+    pixel_stores_[i] = integer(pixel_stores[i].name);
+    glPixelStorei(pixel_stores[i].name, pixel_stores[i].usual);
+  }
 }
 
 StateGuard::~StateGuard() {
-  const auto name = [](GLint value) { return static_cast<GLuint>(value); };
-  // What was bound may be gone: deleted by a context that shares its objects, or only kept by being bound.
-  const auto living = [&](GLint value, auto&& is) {
-    return value != 0 && is(name(value)) == GL_TRUE ? name(value) : GLuint{0};
-  };
-  const auto texture = [&](GLint value) { return living(value, [](GLuint n) { return glIsTexture(n); }); };
-  for (std::size_t i = 0; i < switches_.size(); ++i) (enabled_[i] ? glEnable : glDisable)(switches_[i]);
+  restore_fragment_tests();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) turn(obstacles[i], in_the_way_[i]);
+  const auto [front, back] = polygon_mode_;
+  // Only compatibility profiles know two, or have both asked for by one name.
+  glPolygonMode(back == 0 || back == front ? GL_FRONT_AND_BACK : GL_FRONT, unsigned_of(front));
+  if (back != 0 && back != front) glPolygonMode(GL_BACK, unsigned_of(back));
   for (std::size_t i = 0; i < units_.size(); ++i) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-    glBindTexture(GL_TEXTURE_2D, texture(units_[i].texture_2d));
-    glBindTexture(GL_TEXTURE_3D, texture(units_[i].texture_3d));
-    glBindTexture(GL_TEXTURE_BUFFER, texture(units_[i].texture_buffer));
+    glBindTexture(GL_TEXTURE_2D, living_texture(units_[i].texture_2d));
+    glBindTexture(GL_TEXTURE_3D, living_texture(units_[i].texture_3d));
+    glBindTexture(GL_TEXTURE_BUFFER, living_texture(units_[i].texture_buffer));
+    glBindSampler(static_cast<GLuint>(i), living(units_[i].sampler, [](GLuint n) { return glIsSampler(n); }));
   }
-  glActiveTexture(name(active_texture_));
-  for (std::size_t i = 0; i < stencil_.size(); ++i) {
-    const StencilSide& side = stencil_[i];
-    const GLenum face = i == 0 ? GL_FRONT : GL_BACK;
-    glStencilFuncSeparate(face, name(side.function), side.reference, name(side.compare_mask));
-    glStencilMaskSeparate(face, name(side.write_mask));
-    glStencilOpSeparate(face, name(side.fail), name(side.depth_fail), name(side.pass));
-  }
-  glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-  glScissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
-  glBlendFuncSeparate(name(blend_functions_[0]), name(blend_functions_[1]), name(blend_functions_[2]),
-                      name(blend_functions_[3]));
-  glBlendEquationSeparate(name(blend_equations_[0]), name(blend_equations_[1]));
-  glColorMask(color_mask_[0], color_mask_[1], color_mask_[2], color_mask_[3]);
-  glClearColor(clear_color_[0], clear_color_[1], clear_color_[2], clear_color_[3]);
-  glClearDepth(static_cast<GLdouble>(clear_depth_));
-  glClearStencil(clear_stencil_);
-  glDepthFunc(name(depth_function_));
-  glDepthRangef(depth_range_[0], depth_range_[1]);
-  glDepthMask(depth_mask_);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(draw_framebuffer_));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, name(read_framebuffer_));
+  glActiveTexture(unsigned_of(active_texture_));
+  glBindImageTexture(0, living_texture(image_.texture), image_.level, image_.layered != 0 ? GL_TRUE : GL_FALSE,
+                     image_.layer, unsigned_of(image_.access), unsigned_of(image_.format));
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, unsigned_of(draw_framebuffer_));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, unsigned_of(read_framebuffer_));
   glUseProgram(living(program_, [](GLuint n) { return glIsProgram(n); }));
-  glBindVertexArray(name(vertex_array_));
-  glBindBuffer(GL_ARRAY_BUFFER, living_buffer(array_buffer_));
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, living_buffer(indirect_buffer_));
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, living_buffer(pack_buffer_));
-  glPixelStorei(GL_PACK_ALIGNMENT, pack_alignment_);
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, name(unpack_buffer_));
-  glPixelStorei(GL_UNPACK_ALIGNMENT, unpack_alignment_);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, unpack_row_length_);
+  glBindVertexArray(unsigned_of(vertex_array_));
+  bind_at(uniform_names, uniform_block, block_);
+  for (std::size_t i = 0; i < buffers_.size(); ++i) glBindBuffer(buffer_targets[i][0], living_buffer(buffers_[i]));
+  for (std::size_t i = 0; i < pixel_stores.size(); ++i) glPixelStorei(pixel_stores[i].name, pixel_stores_[i]);
 }
 
 }  // namespace atomesh::gl
