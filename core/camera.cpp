@@ -84,6 +84,20 @@ Camera make_camera(const Parameters& parameters, const Bounds& bounds, int width
   return camera;
 }
 
+Camera moved_beside(const Camera& camera, double columns, double rows) {
+  Camera moved = camera;
+  const double x = columns * camera.pixel;
+  const double y = rows * camera.pixel;
+  if (camera.projection == Projection::parallel) {
+    moved.eye += x * camera.right + y * camera.up;
+  } else {  // a turn by angles so small that they add up
+    moved.forward = glm::normalize(camera.forward + x * camera.right + y * camera.up);
+    moved.right = glm::normalize(camera.right - x * camera.forward);
+    moved.up = glm::cross(moved.right, moved.forward);
+  }
+  return moved;
+}
+
 void set_view(Parameters& parameters, std::string_view view) {
   for (const NamedView& named : named_views) {
     if (named.name == view) {

@@ -38,6 +38,10 @@ Vec3 project(const Camera& camera, const Vec3& point);
 // bounds: at zoom 1 the bounding sphere fits the shorter side of the picture.
 Camera make_camera(const Parameters& parameters, const Bounds& bounds, int width, int height);
 
+// The same view with every ray moved right and up by so many pixels, few or parts of one: in perspective the camera
+// turns, by which rays at the picture's edge move by somewhat more.
+Camera moved_beside(const Camera& camera, double columns, double rows);
+
 // Sets azimuth and elevation from "front" (looks along +y), "back", "left" (looks along +x), "right", "top" (looks
 // along -z), "bottom", "iso" (30°, 20° … see the table in camera.cpp) or "AZ,EL" in degrees. Throws UsageError naming
 // the nearest.

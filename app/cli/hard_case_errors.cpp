@@ -158,20 +158,6 @@ double outside_of_colors(const Image& image) {
   return most;
 }
 
-Camera moved_beside(const Camera& camera, double columns, double rows) {
-  Camera moved = camera;
-  const double x = columns * camera.pixel;
-  const double y = rows * camera.pixel;
-  if (camera.projection == Projection::parallel) {
-    moved.eye += x * camera.right + y * camera.up;
-  } else {  // a turn by angles so small that they add up
-    moved.forward = glm::normalize(camera.forward + x * camera.right + y * camera.up);
-    moved.right = glm::normalize(camera.right - x * camera.forward);
-    moved.up = glm::cross(moved.right, moved.forward);
-  }
-  return moved;
-}
-
 namespace {
 
 Image judged(const Scene& scene, const Camera& camera, const Parameters& parameters) {

@@ -105,7 +105,4 @@ class JudgedRays {
   Image centre_, low_, high_;
 };
 
-// The camera with every ray moved right and up by fractions of a pixel.
-Camera moved_beside(const Camera& camera, double columns, double rows);
-
 }  // namespace atomesh::cli

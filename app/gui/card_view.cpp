@@ -1,11 +1,11 @@
 #include "app/gui/card_view.h"
 
+#include <QEvent>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
 #include <QOpenGLExtraFunctions>
 #include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
-#include <QPainter>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -29,6 +29,27 @@ constexpr double slice = 15.0;
 double rays_of(const Camera& camera, const Parameters& parameters) {
   return static_cast<double>(camera.width) * camera.height * parameters.supersampling * parameters.supersampling;
 }
+
+// Is current in place of a context that is lost, while what belonged to that is deleted. Their names mean nothing to
+// it: no call is without a context, or meets somebody else's objects.
+class StandIn {
+ public:
+  StandIn() {
+    surface_.create();
+    current_ = context_.create() && surface_.isValid() && context_.makeCurrent(&surface_);
+  }
+  ~StandIn() {
+    if (current_) context_.doneCurrent();
+  }
+  StandIn(const StandIn&) = delete;
+  StandIn& operator=(const StandIn&) = delete;
+  bool current() const { return current_; }
+
+ private:
+  QOffscreenSurface surface_;
+  QOpenGLContext context_;
+  bool current_ = false;
+};
 
 }  // namespace
 
@@ -69,10 +90,48 @@ void CardView::initializeGL() {
 void CardView::release() {
   if (context() == nullptr) return;
   disconnect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &CardView::release);
-  makeCurrent();
-  gpu_.release();
+  if (context()->isValid()) makeCurrent();
+  if (context()->isValid() && QOpenGLContext::currentContext() == context()) {
+    give_back();
+    doneCurrent();
+    return;
+  }
+  const StandIn other;
+  if (other.current()) {
+    give_back();
+  } else {
+    abandon();
+  }
+}
+
+// A context is current.
+void CardView::give_back() {
+  gpu_->release();
   drop_volume();
-  doneCurrent();
+  overlay_drawing_.release();
+}
+
+// There is no OpenGL any more: what would call it to go stays in memory.
+void CardView::abandon() {
+  stop_refining();
+  for (auto* picture : {&volume_, &coarse_}) static_cast<void>(picture->release());
+  drop_volume();
+  static_cast<void>(gpu_.release());
+  gpu_ = std::make_unique<GpuScene>();
+  if (scene_ && scene_->scene->mode != Mode::volume) gpu_->set_scene(scene_->scene);
+  overlay_drawing_.abandon();
+}
+
+// Whether OpenGL may be called from then on; else it fails.
+bool CardView::take_context() {
+  if (failed_) return false;
+  if (context()->isValid()) makeCurrent();  // by which Qt finds out
+  if (!context()->isValid()) {
+    fail(tr("OpenGL: the context is lost, the graphics card was reset"));
+  } else if (QOpenGLContext::currentContext() != context()) {
+    fail(tr("OpenGL: the context cannot be made current"));
+  }
+  return !failed_;
 }
 
 void CardView::drop_volume() {
@@ -86,10 +145,11 @@ void CardView::drop_volume() {
 
 void CardView::set(const std::shared_ptr<const WorkerPicture>& scene, const Parameters& parameters,
                    const Camera& camera, const QImage& overlay) {
+  if (failed_) return;
   const bool volume = scene && scene->scene->mode == Mode::volume;
   const bool other_size = camera.width != camera_.width || camera.height != camera_.height;
   const bool changed = scene != scene_ || parameters != parameters_ || other_size;
-  if (scene != scene_) gpu_.set_scene(scene && !volume ? scene->scene : nullptr);
+  if (scene != scene_) gpu_->set_scene(scene && !volume ? scene->scene : nullptr);
   scene_ = scene;
   parameters_ = parameters;
   camera_ = camera;
@@ -110,12 +170,29 @@ void CardView::set(const std::shared_ptr<const WorkerPicture>& scene, const Para
   update();
 }
 
-void CardView::paintEvent(QPaintEvent* event) {
-  if (context() != nullptr && !context()->isValid()) {
-    fail(tr("OpenGL: the context is lost, the graphics card was reset"));
-    return;
+// Qt takes for granted that it can make the context current when it draws or makes another framebuffer.
+bool CardView::event(QEvent* event) {
+  switch (event->type()) {
+    case QEvent::Paint:
+    case QEvent::Resize:
+    case QEvent::ScreenChangeInternal:
+#if QT_VERSION >= QT_VERSION_CHECK(6, 6, 0)
+    case QEvent::DevicePixelRatioChange:
+#endif
+      if (context() != nullptr && !take_context()) return true;
+      break;
+    default:
+      break;
   }
-  QOpenGLWidget::paintEvent(event);
+  const bool taken = QOpenGLWidget::event(event);
+  if (event->type() == QEvent::Paint && context() == nullptr) fail(tr("OpenGL: no context can be made"));
+  return taken;
+}
+
+QImage CardView::picture() {
+  if (context() == nullptr || !take_context()) return {};
+  QImage shown = grabFramebuffer();
+  return failed_ ? QImage() : shown;
 }
 
 void CardView::hideEvent(QHideEvent* event) {
@@ -131,7 +208,7 @@ void CardView::bind(Target& target) const {
 }
 
 void CardView::draw_volume() {
-  gpu_.drop_scene();
+  gpu_->drop_scene();
   if (!volume_) volume_ = std::make_unique<gl::VolumePicture>();
   if (volume_->scene() != scene_->scene) {
     coarse_.reset();
@@ -198,8 +275,7 @@ void CardView::show_volume() {
 // One slice of the whole picture, which is begun where it is not.
 void CardView::refine() {
   // What is stale is painted first.
-  if (failed_ || stale_ || detail_.whole() || !isVisible() || !context()->isValid()) return;
-  makeCurrent();
+  if (failed_ || stale_ || detail_.whole() || !isVisible() || !take_context()) return;
   bool finished = false;
   double fraction = 0.0;
   if (!draw_or_fail([&] {
@@ -253,7 +329,7 @@ bool CardView::draw_or_fail(Draw&& draw) {
 void CardView::fail(const QString& message) {
   if (failed_) return;
   failed_ = true;
-  drop_volume();
+  stop_refining();
   emit failed(message);
 }
 
@@ -266,7 +342,7 @@ void CardView::paintGL() {
           show_volume();
         } else {
           drop_volume();
-          gpu_.draw(camera_, parameters_);
+          gpu_->draw(camera_, parameters_);
           context()->functions()->glFinish();
           gl::require_living_context();
         }
@@ -276,8 +352,9 @@ void CardView::paintGL() {
   const double ms = volume ? shown_ms_ : ms_since(start);
   const bool whole = detail_.whole();
   if (!overlay_.isNull()) {
-    QPainter painter(this);
-    painter.drawImage(rect(), overlay_);
+    const QSize size = rect().size() * devicePixelRatioF();
+    context()->functions()->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
+    if (!draw_or_fail([&] { overlay_drawing_.draw(overlay_, size.width(), size.height()); })) return;
   }
   emit painted(ms, whole);
 }

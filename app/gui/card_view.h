@@ -8,6 +8,7 @@
 
 #include "app/gui/gpu_scene.h"
 #include "app/gui/moving_detail.h"
+#include "app/gui/overlay_drawing.h"
 #include "app/gui/render_worker.h"
 
 class QOpenGLFramebufferObject;
@@ -34,25 +35,30 @@ class CardView : public QOpenGLWidget {
   const QImage& overlay() const { return overlay_; }
   // Of the picture that is shown, or of the next where that is to be drawn.
   const Detail& detail() const { return detail_; }
+  // What is shown, as grabFramebuffer() gives it; null where the context is lost.
+  QImage picture();
 
  signals:
   // What is shown took so long until the card was done (of slices, their sum); whether nothing is left out.
   void painted(double ms, bool whole);
   // Of a volume that is shown with less detail so large a part of the whole one is drawn.
   void refining(double fraction);
-  // Nothing more comes of it: it is to be deleted.
+  // Nothing more comes of it: it is to be deleted, and with it goes what lies on the card.
   void failed(const QString& message);
 
  protected:
   void initializeGL() override;
   void paintGL() override;
-  void paintEvent(QPaintEvent* event) override;
+  bool event(QEvent* event) override;
   void hideEvent(QHideEvent* event) override;
 
  private:
   using Target = std::unique_ptr<QOpenGLFramebufferObject>;
 
+  bool take_context();
   void release();
+  void give_back();
+  void abandon();
   void drop_volume();
   void bind(Target& target) const;
   void show_volume();
@@ -64,7 +70,7 @@ class CardView : public QOpenGLWidget {
   template <class Draw>
   bool draw_or_fail(Draw&& draw);
 
-  GpuScene gpu_;
+  std::unique_ptr<GpuScene> gpu_ = std::make_unique<GpuScene>();
   std::unique_ptr<gl::VolumePicture> volume_;
   std::unique_ptr<gl::VolumePicture> coarse_;  // of fewer cells, once it was needed for this scene
   Target shown_;                               // the volume
@@ -75,6 +81,7 @@ class CardView : public QOpenGLWidget {
   Parameters parameters_;
   Camera camera_;
   QImage overlay_;
+  OverlayDrawing overlay_drawing_;
   MovingDetail moving_;
   Detail detail_;
   QTimer rest_{this};        // runs while a view that moves is shown with less detail

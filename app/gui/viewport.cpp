@@ -201,7 +201,7 @@ bool Viewport::settled() const {
 }
 
 QImage Viewport::screenshot() {
-  if (drawn_by_gpu() && card_ != nullptr && card_->isVisible()) return card_->grabFramebuffer();
+  if (drawn_by_gpu() && card_ != nullptr && card_->isVisible()) return card_->picture();
   return picture_ ? grab().toImage() : QImage();
 }
 

@@ -249,7 +249,7 @@ bool CardCells::make_slab(std::size_t begin) {
 }
 
 std::size_t CardCells::draw(std::size_t begin, std::size_t most, const UseProgram& use) {
-  use(false);
+  use(CellKind::segment);
   const std::size_t rest = slab_end(begin, places_) - begin;
   const std::size_t groups = ceil_quotient(std::min(most, rest), cells_per_group);
   draw_commands(slab_at(begin), commands_, begin / cells_per_group, groups);

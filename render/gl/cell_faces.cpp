@@ -33,15 +33,15 @@ CellFaces::CellFaces(const ScreenMesh& mesh, const MapRamps* ramps, bool either_
 CellFaces::Written CellFaces::write(Index part, FaceVertex* vertices, RampVertex* ramps) const {
   const std::array<ScreenVertex, 4> corners = mesh_.corners(part);
   if (ramps_ != nullptr && part < mesh_.cells_of_scene() && small(corners)) {
-    const std::optional<std::size_t> written = write_ramps(part, corners, vertices, ramps);
-    if (written) return {*written, true};
+    const std::optional<Written> written = write_ramps(part, corners, vertices, ramps);
+    if (written) return *written;
   }
-  return {3 * front_faces(corners, mesh_.view().grid, vertices), false};
+  return {3 * front_faces(corners, mesh_.view().grid, vertices), CellKind::segment};
 }
 
 // None where the cell does not suit ramps.
-std::optional<std::size_t> CellFaces::write_ramps(Index part, const std::array<ScreenVertex, 4>& corners,
-                                                  FaceVertex* vertices, RampVertex* ramps) const {
+std::optional<CellFaces::Written> CellFaces::write_ramps(Index part, const std::array<ScreenVertex, 4>& corners,
+                                                         FaceVertex* vertices, RampVertex* ramps) const {
   const PixelGrid& grid = mesh_.view().grid;
   FewestFaces faces;
   if (either_side_) {
@@ -50,7 +50,7 @@ std::optional<std::size_t> CellFaces::write_ramps(Index part, const std::array<S
     faces.count = front_faces(corners, grid, vertices);
   }
   const std::span<const FaceVertex> once(vertices, 3 * faces.count);
-  if (once.empty()) return 0;
+  if (once.empty()) return Written();
   double longest = 0.0;
   for (std::size_t i = 0; i < once.size(); i += 3) {
     const std::span<const FaceVertex, 3> face = once.subspan(i).first<3>();
@@ -71,7 +71,7 @@ std::optional<std::size_t> CellFaces::write_ramps(Index part, const std::array<S
       ramps[at + i] = {static_cast<float>(rows[static_cast<std::size_t>(n)]), ramps[i].longest};
     }
   }
-  return static_cast<std::size_t>(count) * once.size();
+  return Written{static_cast<std::size_t>(count) * once.size(), ramps_->kind_of(part)};
 }
 
 bool CellFaces::small(const std::array<ScreenVertex, 4>& corners) const {

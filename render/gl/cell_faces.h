@@ -30,15 +30,15 @@ class CellFaces {
   // Of a part of the mesh; `ramps` is written for sums of ramps alone. There is room for most_vertices.
   struct Written {
     std::size_t vertices = 0;
-    bool ramps = false;
+    CellKind kind = CellKind::segment;
   };
   static constexpr int most_rows = 8;
   static constexpr std::size_t most_vertices = 3 * most_faces * most_rows;
   Written write(Index part, FaceVertex* vertices, RampVertex* ramps) const;
 
  private:
-  std::optional<std::size_t> write_ramps(Index part, const std::array<ScreenVertex, 4>& corners, FaceVertex* vertices,
-                                         RampVertex* ramps) const;
+  std::optional<Written> write_ramps(Index part, const std::array<ScreenVertex, 4>& corners, FaceVertex* vertices,
+                                     RampVertex* ramps) const;
   bool small(const std::array<ScreenVertex, 4>& corners) const;
   double longest_segment(std::span<const FaceVertex, 3> face, double way, bool mirrored) const;
   double longest_ray(const std::array<ScreenVertex, 4>& corners) const;

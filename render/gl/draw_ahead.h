@@ -19,17 +19,23 @@ class DrawAhead {
   DrawAhead(const DrawAhead&) = delete;
   DrawAhead& operator=(const DrawAhead&) = delete;
 
-  // What was asked for since the last call is drawn from now on. Where much of what was so before is not finished,
-  // waits until little of it is: then several follow one another, for whoever asks keeps a core from drawing.
-  void go_on();
+  // So many cells have been asked for. Every now and then they are drawn from now on; where much of what was so before
+  // is not finished, waits until little of it is: then several follow one another, for whoever asks keeps a core from
+  // drawing.
+  void go_on(std::size_t cells);
 
  private:
-  static constexpr std::size_t most = 6;
+  static constexpr std::size_t cells_at_once = 1024;  // still in the caches when they are filled
+  static constexpr std::size_t most = 6;              // times so many
   static constexpr std::size_t least = 2;
 
+  // To a thread that draws, unless they might run out of what to draw: the others wait at each scene's ends for one
+  // that waits for this one's core, and systems leave it there even while another core idles.
+  void give_way();
   void leave(std::size_t count);
 
-  std::deque<GLsync> under_way_;
+  std::size_t cells_ = 0;         // not begun
+  std::deque<GLsync> under_way_;  // of each so many cells
 };
 
 }  // namespace atomesh::gl

@@ -47,8 +47,10 @@ MapRamps::MapRamps(const Scene& scene, const ColorMap& color_map, double alpha_l
     : pieces_(map_pieces(color_map, alpha_length)), cells_(scene.tetrahedra.size()) {
   make_rows();
   std::atomic<std::size_t> too_deep{0};
+  std::atomic<std::size_t> one_piece{0};
   parallel_for(cells_.size(), cells_per_range, [&](std::size_t begin, std::size_t end) {
     std::size_t deep = 0;
+    std::size_t simple = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Tetrahedron& t = scene.tetrahedra[i];
       const std::array s{scene.scalars[t[0]], scene.scalars[t[1]], scene.scalars[t[2]], scene.scalars[t[3]]};
@@ -61,10 +63,13 @@ MapRamps::MapRamps(const Scene& scene, const ColorMap& color_map, double alpha_l
         }
       }
       deep += 0.5F * longest > cells_[i].longest ? 1 : 0;
+      simple += in_one_piece(cells_[i]) ? 1 : 0;
     }
     too_deep += deep;
+    one_piece += simple;
   });
   too_deep_ = too_deep;
+  mostly_one_piece_ = 2 * one_piece > cells_.size();
 }
 
 int MapRamps::last_of_row(int first) const {
@@ -181,6 +186,10 @@ int MapRamps::rows_of(Index cell, std::uint8_t* rows) const {
     piece = end + 1;
   }
   return count;
+}
+
+CellKind MapRamps::kind_of(Index cell) const {
+  return mostly_one_piece_ && in_one_piece(cells_[cell]) ? CellKind::piece : CellKind::ramps;
 }
 
 }  // namespace atomesh::gl

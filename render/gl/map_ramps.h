@@ -10,6 +10,7 @@
 // about m² |Δc| / 12, Δc what the colour changes by. Cells are drawn so up to an optical depth by which that is little.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -46,6 +47,14 @@ struct RampRow {
 };
 static_assert(sizeof(RampRow) == 8 * sizeof(Vec4f));
 
+// By which program a cell is drawn.
+enum class CellKind : std::uint8_t {
+  piece,   // a sum of ramps, all of whose scalars lie in the first piece of its row
+  ramps,   // any sum of ramps
+  segment  // not as a sum of ramps
+};
+inline constexpr std::size_t cell_kinds = 3;
+
 // Rows of a map, and which of them each cell of a scene is drawn with.
 class MapRamps {
  public:
@@ -62,6 +71,8 @@ class MapRamps {
   // many are written, at most most_rows.
   static constexpr int most_rows = 33;
   int rows_of(Index cell, std::uint8_t* rows) const;
+  // Not CellKind::segment. That of one piece only where it is that of most of the scene's cells.
+  CellKind kind_of(Index cell) const;
 
  private:
   // From the lowest scalar's piece to the highest one's.
@@ -69,6 +80,7 @@ class MapRamps {
     float longest;
     std::uint8_t first, last;
   };
+  static bool in_one_piece(const Cell& cell) { return cell.first == cell.last; }
   // A row from each piece, with or without an end to either side: where a cell has more below or above.
   static constexpr std::uint8_t cut_below = 1;
   static constexpr std::uint8_t cut_above = 2;
@@ -83,6 +95,7 @@ class MapRamps {
   std::vector<RampRow> rows_;              // four of each piece, by what is cut
   std::vector<Cell> cells_;
   std::size_t too_deep_ = 0;
+  bool mostly_one_piece_ = false;
 };
 
 }  // namespace atomesh::gl

@@ -144,6 +144,9 @@ TableEntry mix(const TableEntry& a, const TableEntry& b, double u) {
 constexpr double within_piece = 1.0 / 256.0;
 constexpr double across_knot = 1.0 / 4.0;
 
+// Of the error of a table's worst segment samples find so much at least.
+constexpr double nearly_all = 0.95;
+
 // Samples of a table's error: what is looked at first is what was worst in the table before, so that a table that is
 // too small is found out soon.
 class Samples {
@@ -187,18 +190,27 @@ class Samples {
   }
 
  private:
-  // In a table of so many cells each way: in the midst of cells at and beside the knots, and of others.
+  // In a table of so many cells each way: within cells at and to either side of the knots (which may lie between two
+  // cells, and are rounded), and in the midst of others.
   std::vector<Pair> pairs_for(int cells) const {
     std::vector<double> about;
     const double cell = 1.0 / cells;
+    std::size_t per_knot = 0;
     for (const double knot : knots_) {
       if (knot < 0.0 || knot > 1.0) continue;
-      const double middle = (std::floor(knot * cells) + 0.5) * cell;
-      for (const double scalar : {knot, middle, middle - cell}) about.push_back(std::clamp(scalar, 0.0, 1.0));
+      const std::size_t first = about.size();
+      about.push_back(knot);
+      for (const double beside : {-1.0, 0.0, 1.0}) {
+        for (const double within : {0.3, 0.7}) {
+          about.push_back(std::clamp((std::floor(knot * cells) + beside + within) * cell, 0.0, 1.0));
+        }
+      }
+      per_knot = about.size() - first;
     }
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < about.size(); ++i) {
-      for (std::size_t j = i / 3 * 3; j < i / 3 * 3 + 3; ++j) pairs.push_back({about[i], about[j]});
+      const std::size_t first = i / per_knot * per_knot;
+      for (std::size_t j = first; j < first + per_knot; ++j) pairs.push_back({about[i], about[j]});
       // From one knot to others, both ways.
       const std::size_t other = (7 * i + 4) % about.size();
       pairs.push_back({about[i], about[other]});
@@ -270,7 +282,7 @@ TableSize choose_size(const std::vector<MapPiece>& pieces, double longest, doubl
     if (of_lengths <= 0.25 * error) break;
   }
   // A table whose entries lie at the knots may be far smaller than its neighbours: all are tried.
-  const double rest = error - of_lengths;
+  const double rest = nearly_all * error - of_lengths;
   double of_scalars = HUGE_VAL;
   int scalars = 16;
   for (; scalars <= most_scalars && scalars * scalars * size.layers <= most_entries; ++scalars) {

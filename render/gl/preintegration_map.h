@@ -59,7 +59,7 @@ struct TableSize {
   bool operator==(const TableSize&) const = default;
 };
 
-inline constexpr int most_scalars = 512;
+inline constexpr int most_scalars = 1024;
 inline constexpr int most_layers = 33;
 inline constexpr int most_entries = 1 << 22;  // 64 MiB
 
@@ -70,8 +70,8 @@ inline constexpr int most_entries = 1 << 22;  // 64 MiB
 double error_of_segment(const std::vector<MapPiece>& pieces, double near, double far, double length,
                         const glm::dvec4& light);
 
-// The smallest table by which no sample is more than `error` wrong; samples are some hundreds of segments at, about and
-// between the knots, in the middle of the table's cells and layers. 1e-6 <= error.
+// The smallest table by which no sample is more than nearly `error` wrong; samples are several hundred segments at,
+// about and between the knots, within the table's cells and layers. 1e-6 <= error.
 TableSize choose_size(const std::vector<MapPiece>& pieces, double longest, double error);
 
 }  // namespace atomesh::gl

@@ -10,6 +10,7 @@
 #include "core/color_map.h"
 #include "core/progress.h"
 #include "render/gl/front_faces.h"
+#include "render/gl/map_ramps.h"
 #include "render/gl/marked_tiles.h"
 #include "render/gl/objects.h"
 #include "render/gl/screen_mesh.h"
@@ -43,11 +44,10 @@ class PreparedCells {
   virtual std::size_t places() const = 0;
   // The slab with the place `begin`: its triangles are made; false where they are there already, or made by draw().
   // Then draws it, or of it some places from `begin` on; a vertex array is bound whose attributes 0 to 2 are the
-  // cells', and `use` makes a program current: cells.vert's, or, for cells whose light is a sum of ramps (map_ramps.h),
-  // ramp_cells.vert's.
+  // cells', and `use` makes the program of a kind current: cells.vert's, or ramp_cells.vert's.
   virtual bool make_slab(std::size_t begin) = 0;
   // Returns how many: about `most`, at least one, not beyond the slab.
-  using UseProgram = std::function<void(bool ramps)>;
+  using UseProgram = std::function<void(CellKind kind)>;
   virtual std::size_t draw(std::size_t begin, std::size_t most, const UseProgram& use) = 0;
   static std::size_t slab_end(std::size_t begin, std::size_t places) {
     return std::min(begin - begin % cells_per_slab + cells_per_slab, places);

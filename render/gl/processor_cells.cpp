@@ -20,11 +20,10 @@ namespace {
 constexpr std::size_t cells_per_share = 4096;
 static_assert(cells_per_slab % cells_per_share == 0);
 
-// Software sorts triangles into tiles before it fills them, on other threads: so many are still in the caches then, and
-// those threads have something to do while the next ones are made.
-constexpr std::size_t cells_per_portion = 1024;
+// Software sorts triangles into tiles before it fills them, on other threads, which get a core between portions.
+constexpr std::size_t cells_per_portion = 256;
 // Nearly all cells have at most two triangles.
-constexpr std::size_t portion_vertices = cells_per_portion * 6 + CellFaces::most_vertices;
+constexpr std::size_t portion_vertices = cells_per_portion * 6;
 
 // Going from one program to the other and back takes software about as long as ten cells: where more of the scene's
 // cells do not suit ramps, none is drawn by them. (Whether a single cell is must not depend on the others: windows of a
@@ -203,7 +202,7 @@ std::size_t ProcessorCells::draw(std::size_t begin, std::size_t most, const UseP
     if (begin == 0) triangles_ = ramp_triangles_ = 0;
     draw_portions(std::span(parts_).subspan(begin, count), use);
   } else {
-    use(false);
+    use(CellKind::segment);
     const std::size_t from = begin % cells_per_slab;
     draw_slab(slab_at(begin), from, from + count);
   }
@@ -231,53 +230,65 @@ void ProcessorCells::draw_slab(const Slab& slab, std::size_t begin, std::size_t 
 }
 
 void ProcessorCells::draw_portions(std::span<const Index> parts, const UseProgram& use) {
-  // Vertices of triangles that are drawn by the same program.
-  struct Run {
-    std::size_t first, end;
-    bool ramps;
-  };
+  const PixelGrid& grid = mesh_->view().grid;
   const MapRamps* const ramps = ramps_suit_ ? ramps_.get() : nullptr;
   const CellFaces faces(*mesh_, ramps, outside_shows_order() && !rays_end_);
-  portion_.vertices.reserve(portion_vertices * sizeof(FaceVertex), GL_STREAM_DRAW);
-  if (ramps != nullptr) portion_.ramps.reserve(portion_vertices * sizeof(RampVertex), GL_STREAM_DRAW);
-  std::vector<Run> runs;
-  std::optional<bool> used;
+  std::array<FaceVertex, CellFaces::most_vertices> of_cell;
+  std::array<RampVertex, CellFaces::most_vertices> beside;
+  CellBatch batch(grid.columns, grid.rows);
+  std::optional<CellKind> used;
   for (std::size_t i = 0; i < parts.size();) {
-    runs.clear();
-    std::size_t written = 0;
-    {
-      Mapped<FaceVertex> vertices(portion_.vertices, portion_vertices);
-      std::optional<Mapped<RampVertex>> beside;
-      if (ramps != nullptr) beside.emplace(portion_.ramps, portion_vertices);
-      const std::size_t end = std::min(parts.size(), i + cells_per_portion);
-      for (; i < end && written + CellFaces::most_vertices <= portion_vertices; ++i) {
-        const auto [count, by_ramps] =
-            faces.write(parts[i], vertices.data() + written, beside ? beside->data() + written : nullptr);
-        if (count == 0) continue;
-        if (runs.empty() || runs.back().ramps != by_ramps) runs.push_back({written, written, by_ramps});
-        written += count;
-        runs.back().end = written;
-      }
-      if (beside) beside->unmap();
-      vertices.unmap();
+    batch.clear();
+    for (; i < parts.size() && batch.cells() < cells_per_portion && batch.vertices() < portion_vertices; ++i) {
+      const auto [count, kind] = faces.write(parts[i], of_cell.data(), beside.data());
+      if (count == 0) continue;
+      const GridBox box = pixels_between(mesh_->corners(parts[i]), grid);
+      if (!batch.add(box, kind, std::span(of_cell).first(count), beside.data())) break;
     }
-    bind_vertices(portion_.vertices);
-    (ramps != nullptr ? glEnableVertexAttribArray : glDisableVertexAttribArray)(2);
-    if (ramps != nullptr) {
-      glBindBuffer(GL_ARRAY_BUFFER, portion_.ramps.name());
-      glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof(RampVertex), nullptr);
-      ramp_rows_.bind(ramp_rows_unit);
+    if (batch.vertices() == 0) continue;
+    send_portion(batch);
+    std::size_t first = 0;
+    for (const CellKind kind : {CellKind::piece, CellKind::ramps, CellKind::segment}) {
+      const std::size_t count = batch.list(kind).faces.size();
+      if (count == 0) continue;
+      if (used != kind) use(kind);
+      used = kind;
+      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
+      first += count;
+      triangles_ += count / 3;
+      if (kind != CellKind::segment) ramp_triangles_ += count / 3;
     }
-    for (const Run& run : runs) {
-      if (used != run.ramps) use(run.ramps);
-      used = run.ramps;
-      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(run.first), static_cast<GLsizei>(run.end - run.first));
-      const std::size_t triangles = (run.end - run.first) / 3;
-      triangles_ += triangles;
-      if (run.ramps) ramp_triangles_ += triangles;
-    }
-    ahead_.go_on();
+    ahead_.go_on(batch.cells());
   }
+}
+
+// And binds it.
+void ProcessorCells::send_portion(const CellBatch& batch) {
+  const std::size_t room = std::max(batch.vertices(), portion_vertices + CellFaces::most_vertices);
+  const std::size_t segments = batch.list(CellKind::segment).faces.size();
+  portion_.vertices.reserve(room * sizeof(FaceVertex), GL_STREAM_DRAW);
+  portion_.ramps.reserve(room * sizeof(RampVertex), GL_STREAM_DRAW);
+  Mapped<FaceVertex> vertices(portion_.vertices, batch.vertices());
+  FaceVertex* vertex = vertices.data();
+  for (std::size_t kind = 0; kind < cell_kinds; ++kind) {
+    vertex = std::ranges::copy(batch.list(static_cast<CellKind>(kind)).faces, vertex).out;
+  }
+  vertices.unmap();
+  bind_vertices(portion_.vertices);
+  if (segments == batch.vertices()) {
+    glDisableVertexAttribArray(2);
+    return;
+  }
+  Mapped<RampVertex> ramps(portion_.ramps, batch.vertices());
+  RampVertex* ramp = ramps.data();
+  for (std::size_t kind = 0; kind < cell_kinds; ++kind) {
+    ramp = std::ranges::copy(batch.list(static_cast<CellKind>(kind)).ramps, ramp).out;
+  }
+  ramps.unmap();
+  glEnableVertexAttribArray(2);
+  glBindBuffer(GL_ARRAY_BUFFER, portion_.ramps.name());
+  glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof(RampVertex), nullptr);
+  ramp_rows_.bind(ramp_rows_unit);
 }
 
 void ProcessorCells::draw_marked(const MarkedTiles& tiles, const Progress& progress) {

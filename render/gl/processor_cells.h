@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "render/gl/cell_batch.h"
 #include "render/gl/cell_faces.h"
 #include "render/gl/cell_order.h"
 #include "render/gl/draw_ahead.h"
@@ -65,6 +66,7 @@ class ProcessorCells final : public PreparedCells {
   void fill(Slab& slab, std::span<const Index> parts) const;
   static void draw_slab(const Slab& slab, std::size_t begin, std::size_t end);
   void draw_portions(std::span<const Index> parts, const UseProgram& use);
+  void send_portion(const CellBatch& batch);
 
   const Scene& scene_;
   bool by_faces_;

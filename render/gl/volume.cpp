@@ -77,7 +77,7 @@ struct Volume::Pace {
 
 Volume::Volume() : driver_(current_driver()) {
   require_sufficient_driver();
-  blend_ = make_programs("cells.vert", "blend.frag", {});
+  blend(CellKind::segment) = make_programs("cells.vert", "blend.frag", {});
   std::array<GLint, 2> viewport{};
   glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
   viewport_side_ = std::min({viewport[0], viewport[1], 2 * guard_pixels});
@@ -116,8 +116,8 @@ void Volume::choose_programs(bool table, bool rays_end) {
   if (with_table_ == table && with_ray_ends_ == rays_end) return;
   with_table_ = table;
   with_ray_ends_ = rays_end;
-  blend_ramps_ = {};
-  blend_ = make_programs("cells.vert", "blend.frag", {});
+  blend_ = {};
+  blend(CellKind::segment) = make_programs("cells.vert", "blend.frag", {});
   repair_.reset();
 }
 
@@ -324,7 +324,10 @@ void Volume::set_order_check(bool on) {
 void Volume::clear(const Begun& begun) {
   choose_programs(make_table(begun.parameters), !begun.ray_ends.empty());
   if (by_ramps(begun.parameters)) {
-    if (!blend_ramps_.perspective) blend_ramps_ = make_programs("ramp_cells.vert", "blend.frag", {"RAMPS"});
+    if (!blend(CellKind::ramps).perspective) {
+      blend(CellKind::piece) = make_programs("ramp_cells.vert", "blend.frag", {"RAMPS", "ONE_PIECE"});
+      blend(CellKind::ramps) = make_programs("ramp_cells.vert", "blend.frag", {"RAMPS"});
+    }
     cells_->use_ramps(begun.parameters.volume.color_map, begun.parameters.volume.alpha_length, !begun.ray_ends.empty());
   } else {
     cells_->use_no_ramps();
@@ -350,8 +353,8 @@ void Volume::draw_portion(Begun& begun, const Pace& pace, Progress& progress) {
   set_blending();
   // Software takes a fifth longer where it has to look at depths.
   set_order_check(begun.parameters.havs.order != HavsOrder::none && !cells_->outside_shows_order());
-  const std::size_t count = cells_->draw(begun.drawn, pace.portion(begun.places_per_ms),
-                                         [this](bool ramps) { use(ramps ? blend_ramps_ : blend_); });
+  const std::size_t count =
+      cells_->draw(begun.drawn, pace.portion(begun.places_per_ms), [this](CellKind kind) { use(blend(kind)); });
   begun.drawn += count;
   if (pace.limited()) {
     glFinish();

@@ -145,6 +145,7 @@ class Volume {
   void bind_picture() const;
   static void set_blending();
   static void set_order_check(bool on);
+  Programs& blend(CellKind kind) { return blend_[static_cast<std::size_t>(kind)]; }
   void use(const Programs& programs) const;
 
   Driver driver_;
@@ -165,9 +166,8 @@ class Volume {
   // The programs look segments up in the table; ask for where rays end.
   bool with_table_ = false;
   bool with_ray_ends_ = false;
-  Programs blend_;
-  Programs blend_ramps_;
-  Programs outside_;  // depths alone
+  std::array<Programs, cell_kinds> blend_;  // those of sums of ramps once they are needed
+  Programs outside_;                        // depths alone
   std::unique_ptr<OrderRepair> repair_;
   Programs gather_;  // of repair_
   VertexArray vertex_array_;

@@ -56,6 +56,29 @@ TEST(Camera, ProjectInvertsRay) {
   }
 }
 
+TEST(Camera, MovedBesideItSeesWhatIsBesideItsRays) {
+  for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+    Parameters parameters;
+    parameters.projection = projection;
+    set_view(parameters, "iso");
+    const Camera camera = make_camera(parameters, unit_box(), 65, 49);
+    const Camera moved = moved_beside(camera, 0.5, -0.25);
+    EXPECT_NEAR(glm::length(moved.right), 1.0, 1e-14);
+    EXPECT_NEAR(glm::length(moved.up), 1.0, 1e-14);
+    EXPECT_NEAR(glm::length(glm::cross(moved.right, moved.up) + moved.forward), 0.0, 1e-14);
+    // In the middle and in a corner. A perspective ray moves by 1 / cos² of its angle to the axis.
+    for (const auto& [column, row] : {std::pair{32, 24}, {0, 0}}) {
+      const double tangent = std::hypot(camera.x_of(column), camera.y_of(row));
+      const bool parallel = projection == Projection::parallel;
+      const double allowed = parallel ? 1e-12 : 0.6 * (tangent * tangent + 0.01);
+      const Ray r = ray(moved, moved.x_of(column), moved.y_of(row));
+      const Vec3 seen = project(camera, r.origin + 7.0 * r.direction);
+      EXPECT_NEAR((seen.x - camera.x_of(column)) / camera.pixel, 0.5, allowed);
+      EXPECT_NEAR((seen.y - camera.y_of(row)) / camera.pixel, -0.25, allowed);
+    }
+  }
+}
+
 TEST(Camera, BoundingSphereFitsTheShorterSide) {
   for (const Projection projection : {Projection::perspective, Projection::parallel}) {
     Parameters parameters;

@@ -122,20 +122,6 @@ Parameters looking(Mode mode, std::string_view view, Projection projection) {
   return parameters;
 }
 
-Camera nudged(const Camera& camera, double columns, double rows) {
-  Camera moved = camera;
-  const double x = columns * camera.pixel;
-  const double y = rows * camera.pixel;
-  if (camera.projection == Projection::parallel) {
-    moved.eye += x * camera.right + y * camera.up;
-  } else {  // a turn by angles so small that they add up
-    moved.forward = glm::normalize(camera.forward + x * camera.right + y * camera.up);
-    moved.right = glm::normalize(camera.right - x * camera.forward);
-    moved.up = glm::cross(moved.right, moved.forward);
-  }
-  return moved;
-}
-
 Subject shaken_box(Mode mode, Projection projection, int width, int height) {
   Subject subject;
   subject.material = box_material(3, 4, 3, 2.0, shaking(0.3, 5));

@@ -31,9 +31,6 @@ std::function<Vec3(const Vec3&)> shaking(double amplitude, std::uint64_t seed);
 // Parameters of a mode and view with the sample's centre in the middle of the picture.
 Parameters looking(Mode mode, std::string_view view, Projection projection = Projection::parallel);
 
-// The same view with every ray moved right and up by fractions of a pixel.
-Camera nudged(const Camera& camera, double columns, double rows);
-
 inline constexpr Mode all_modes[] = {Mode::volume_surface, Mode::volume, Mode::surface, Mode::xray, Mode::atoms};
 
 // A shaken box with defects, seen aslant, ready to be drawn in a mode; layers and balls half transparent.

@@ -73,7 +73,7 @@ struct Range {
     for (const double columns : {0.0, -1.0, 1.0}) {
       for (const double rows : {0.0, -1.0, 1.0}) {
         const Image image =
-            draw(reference_renderer(), scene, nudged(camera, columns / 4096, rows / 4096), parameters).image;
+            draw(reference_renderer(), scene, moved_beside(camera, columns / 4096, rows / 4096), parameters).image;
         if (low.pixels.empty()) low = high = image;
         for (std::size_t i = 0; i < image.pixels.size(); ++i) {
           low.pixels[i] = glm::min(low.pixels[i], image.pixels[i]);

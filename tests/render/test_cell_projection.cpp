@@ -188,7 +188,7 @@ Image picture(const Scene& scene, const Camera& camera, const Parameters& parame
 // The judge's picture along cell projection's own rays, which pass a hair beside the pixels' centres.
 Image judged(const Scene& scene, const Camera& camera, const Parameters& parameters) {
   const Camera beside =
-      nudged(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
+      moved_beside(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
   return draw(reference_renderer(), scene, beside, parameters).image;
 }
 

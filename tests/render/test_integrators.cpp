@@ -153,7 +153,7 @@ TEST(Integrators, ExactIsWithinAHundredThousandthOfTheJudge) {
       for (float& scalar : scene.scalars) scalar = static_cast<float>(random()) * 0x1p-32F;
       const Camera camera = make_camera(parameters, scene.bounds, 12, 12);
       const Camera beside =
-          nudged(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
+          moved_beside(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
       const Image judge = draw(reference_renderer(), scene, beside, parameters).image;
       on_every_kernel([&] {
         // Where extinction is small so is the light, and so must be the error.
@@ -197,7 +197,7 @@ TEST(Integrators, LinearAndPreintegratedAreTheJudgesWhereTheMapHasNoKnots) {
     for (float& scalar : scene.scalars) scalar = static_cast<float>(random()) * 0x1p-32F;
     const Camera camera = make_camera(parameters, scene.bounds, 24, 24);
     const Camera beside =
-        nudged(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
+        moved_beside(camera, cell_projection::ray_shift, cell_projection::ray_shift * cell_projection::ray_lift);
     const Image judge = draw(reference_renderer(), scene, beside, parameters).image;
     for (const auto& [integrator, most] :
          {std::pair{Integrator::linear, 1e-5}, std::pair{Integrator::preintegrated, 1e-5}}) {

@@ -119,7 +119,7 @@ TEST_P(Mediums, AreWhatTheJudgeSeesAndWhatTheirCellsAre) {
       using cell_projection::ray_shift;
       const Image judged = draw(reference_renderer(), scene, camera, parameters).image;
       const Image beside =
-          draw(reference_renderer(), scene, nudged(camera, ray_shift, ray_shift * ray_lift), parameters).image;
+          draw(reference_renderer(), scene, moved_beside(camera, ray_shift, ray_shift * ray_lift), parameters).image;
       EXPECT_LE(compare_images(judged, filled.image).max, 5e-6 + compare_images(judged, beside).max);
     }
   }

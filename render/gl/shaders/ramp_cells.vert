@@ -13,10 +13,16 @@ uniform vec2 middle;     // gl_FragCoord where column and row are 0
 
 noperspective out vec4 entry_at;
 noperspective out vec2 way_at;  // w; Å for each unit of way / (w · far w), or of way
-flat out vec3 along;            // slope of u; scalar from which the row's are counted; longest way
 // The row: RGB and extinction of the first piece; by which they go up from there; with the scalar's square, and the
 // lowest scalar; what the first knot adds; with the square, and the highest scalar; the second knot; and where it is.
-flat out vec4 piece, piece_slope, piece_square, knot, knot_square, next_knot, next_knot_square;
+flat out vec4 piece, piece_slope, piece_square;
+// Slope of u; scalar from which the row's are counted; longest way; of cells of one piece the highest scalar.
+#ifdef ONE_PIECE
+flat out vec4 along;
+#else
+flat out vec3 along;
+flat out vec4 knot, knot_square, next_knot, next_knot_square;
+#endif
 
 void main() {
   gl_Position = vec4(entry.xy * pixel_scale, entry.z * depth_scale.x + depth_scale.y, 1.0);
@@ -32,9 +38,13 @@ void main() {
   piece = texelFetch(ramp_rows, texel);
   piece_slope = texelFetch(ramp_rows, texel + 1);
   piece_square = texelFetch(ramp_rows, texel + 2);
+#ifdef ONE_PIECE
+  along.w = texelFetch(ramp_rows, texel + 4).a;
+#else
   knot = texelFetch(ramp_rows, texel + 3);
   knot_square = texelFetch(ramp_rows, texel + 4);
   next_knot = texelFetch(ramp_rows, texel + 5);
   next_knot_square = texelFetch(ramp_rows, texel + 6);
-  along = vec3(behind.w, texelFetch(ramp_rows, texel + 7).x, ramp.y);
+#endif
+  along.xyz = vec3(behind.w, texelFetch(ramp_rows, texel + 7).x, ramp.y);
 }

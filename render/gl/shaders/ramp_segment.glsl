@@ -2,8 +2,14 @@
 
 noperspective in vec4 entry_at;
 noperspective in vec2 way_at;
+flat in vec4 piece, piece_slope, piece_square;
+#ifdef ONE_PIECE
+flat in vec4 along;
+#define highest along.w
+#else
 flat in vec3 along;
-flat in vec4 piece, piece_slope, piece_square, knot, knot_square, next_knot, next_knot_square;
+flat in vec4 knot, knot_square, next_knot, next_knot_square;
+#endif
 
 #ifdef RAY_ENDS
 layout(binding = 9) uniform sampler2D ray_ends;  // w where something opaque ends each pixel's ray

@@ -2,6 +2,7 @@
 // render/gl/map_ramps.h, that is in piece, piece_slope, piece_square, knot, knot_square, next_knot and
 // next_knot_square; `zero`: the scalar from which the row counts. Scalars in [0,1] where the ray enters and where it
 // leaves, `length` in Å: premultiplied RGB and opacity of what lies in the row's pieces.
+// ONE_PIECE: all segments lie in the row's first piece, and its highest scalar is in `highest`.
 
 // min() and max() ask for NaN.
 float least(float a, float b) {
@@ -12,6 +13,15 @@ float most(float a, float b) {
 }
 
 vec4 ramps_light(float near_scalar, float far_scalar, float zero, float length) {
+#ifdef ONE_PIECE
+  // Of thin triangles rounding may make anything of them.
+  float from = least(most(near_scalar - zero, piece_square.a), highest);
+  float to = least(most(far_scalar - zero, piece_square.a), highest);
+  float sum = from + to;
+  vec4 linear = piece + sum * piece_slope;
+  vec3 square = (sum * sum - from * to) * piece_square.rgb;
+  float scale = length;
+#else
   // A segment's scalars are taken for 2^-13 apart where they are closer: what is divided by is not 0.
   float middle = 0.5 * (near_scalar + far_scalar) - zero;
   float half_width = most(0.5 * abs(far_scalar - near_scalar), 1.0 / 16384.0);
@@ -35,6 +45,7 @@ vec4 ramps_light(float near_scalar, float far_scalar, float zero, float length) 
   linear += (across * sum) * next_knot;
   square += (across * (sum * sum - low * high)) * next_knot_square.rgb;
   float scale = length * (0.5 / half_width);
+#endif
   // (1 - e^-depth) / depth, by its series: to 2e-4 where depth <= 1, and it is no more but for rounding
   float depth = scale * linear.a;
   float depth_square = depth * depth;

@@ -98,7 +98,7 @@ inline Disagreement disagreement(const Image& gpu, const Scene& scene, const Cam
   for (const int across : {-1, 0, 1}) {
     for (const int upward : {-1, 0, 1}) {
       if (across == 0 && upward == 0) continue;
-      const Image near = cpu_picture(scene, nudged(camera, slack * across, slack * upward), parameters);
+      const Image near = cpu_picture(scene, moved_beside(camera, slack * across, slack * upward), parameters);
       for (std::size_t i = 0; i < near.pixels.size(); ++i) {
         low.pixels[i] = glm::min(low.pixels[i], near.pixels[i]);
         high.pixels[i] = glm::max(high.pixels[i], near.pixels[i]);

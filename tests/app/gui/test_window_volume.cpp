@@ -1,23 +1,19 @@
 // Volumes in the window by the graphics card (here mostly: by OpenGL in software): the pictures of the renderers,
-// beside surface and balls in the same context, and what happens when OpenGL fails.
+// beside surface and balls in the same context.
 #include <epoxy/gl.h>  // before Qt's
 #include <gtest/gtest.h>
 
 #include <QLabel>
-#include <QOpenGLWidget>
+#include <QPainter>
 #include <QSignalSpy>
 #include <QTest>
 #include <algorithm>
 #include <map>
-#include <thread>
-#include <utility>
+#include <vector>
 
 #include "app/gui/card_view.h"
 #include "app/gui/view_input.h"
-#include "render/gl/context.h"
-#include "tests/app/gui/window_fixture.h"
-#include "tests/render/fixtures.h"
-#include "tests/render/gl/instead.h"
+#include "tests/app/gui/window_volume_fixture.h"
 
 namespace {
 
@@ -25,62 +21,7 @@ using namespace atomesh;
 using namespace atomesh::gui;
 using test::child;
 using test::wait_for;
-
-class WindowVolume : public test::WindowFixture {
- protected:
-  void SetUp() override {
-    // The driver checks every call.
-    QSurfaceFormat format = QSurfaceFormat::defaultFormat();
-    format.setOption(QSurfaceFormat::DebugContext);
-    QSurfaceFormat::setDefaultFormat(format);
-    test::WindowFixture::SetUp();
-    if (IsSkipped()) return;
-    if (!gpu_of_this_machine().volumes) GTEST_SKIP() << "no OpenGL 4.3";
-    open_salt();
-    workspace().set("volume.alpha_length", "4");
-    connect_log();
-  }
-  void TearDown() override {
-    window.reset();
-    EXPECT_EQ(gl::take_messages(), std::vector<std::string>());
-  }
-
-  Workspace& workspace() { return window->workspace(); }
-  QOpenGLWidget& card() { return child<QOpenGLWidget>(*window, "card_view"); }
-  void connect_log() {
-    QObject::connect(&workspace(), &Workspace::said, window.get(), [this](const QString& line) { log += line + '\n'; });
-  }
-  void draw_with(ViewOptions::Drawing who) {
-    ViewOptions options = workspace().view_options();
-    options.legend = options.tripod = options.scale_bar = false;
-    options.drawing = who;
-    workspace().set_view_options(options);
-  }
-  void choose(Mode mode) { workspace().set("mode", std::string(mode_name(mode))); }
-  bool settled() {
-    return wait_for([&] { return window->viewport().settled(); });
-  }
-  // Its errors are collected from then on; a frame with some throws what they are.
-  void watch_card() {
-    card().makeCurrent();
-    gl::collect_messages();
-    card().doneCurrent();
-  }
-  Image screen() { return test::to_image(window->viewport().screenshot()); }
-  Image rendered(const char* name) {
-    const Workspace& w = workspace();
-    const Scene scene = make_scene(*w.document()->material, w.shown());
-    Image image;
-    // The window's context may be current in this thread.
-    std::thread([&] {
-      RenderStats stats;
-      image = render(find_renderer(name), scene, w.camera(), w.shown(), stats);
-    }).join();
-    return image;
-  }
-
-  QString log;
-};
+using test::WindowVolume;
 
 TEST_F(WindowVolume, IsTheRenderersPicture) {
   draw_with(ViewOptions::Drawing::gpu);
@@ -280,6 +221,30 @@ TEST_F(WindowVolume, HasInItWhatTheRenderersHave) {
   EXPECT_EQ(compare_images(screen(), nothing_in_it).max, 0.0);
 }
 
+// The card lays over its picture what Qt would.
+TEST_F(WindowVolume, HasTheOverlayOverIt) {
+  draw_with(ViewOptions::Drawing::gpu);
+  workspace().set("background", "0.2,0.4,0.6,0.5");
+  for (const Mode mode : {Mode::volume, Mode::surface}) {
+    draw_with(ViewOptions::Drawing::gpu);
+    choose(mode);
+    ASSERT_TRUE(settled());
+    QImage expected = window->viewport().screenshot();
+    const Image bare = test::to_image(expected);
+    ViewOptions options = workspace().view_options();
+    options.legend = options.tripod = options.scale_bar = true;
+    workspace().set_view_options(options);
+    ASSERT_TRUE(settled());
+    ASSERT_TRUE(window->viewport().drawn_by_gpu());
+    const QImage& overlay = child<CardView>(*window, "card_view").overlay();
+    ASSERT_EQ(overlay.size(), expected.size());
+    QPainter(&expected).drawImage(0, 0, overlay);
+    const Image shown = screen();
+    EXPECT_GT(compare_images(shown, bare).max, 0.5) << mode_name(mode);
+    EXPECT_LE(compare_images(shown, test::to_image(expected)).max, 1.01 / 255.0) << mode_name(mode);
+  }
+}
+
 TEST_F(WindowVolume, IsTheProcessorsWhereOpenGlIsSoftwareAndNobodySaysOtherwise) {
   draw_with(ViewOptions::Drawing::automatic);
   choose(Mode::volume);
@@ -288,86 +253,6 @@ TEST_F(WindowVolume, IsTheProcessorsWhereOpenGlIsSoftwareAndNobodySaysOtherwise)
   if (gpu_of_this_machine().software) {
     EXPECT_TRUE(log.contains("in software")) << log.toStdString();
   }
-}
-
-class FailingWindowVolume : public WindowVolume {
- protected:
-  void SetUp() override {
-    WindowVolume::SetUp();
-    if (IsSkipped()) return;
-    draw_with(ViewOptions::Drawing::gpu);
-    choose(Mode::volume);
-    ASSERT_TRUE(settled());
-    ASSERT_TRUE(window->viewport().drawn_by_gpu());
-    good_ = screen();
-    choose(Mode::surface);
-    ASSERT_TRUE(settled());
-    ASSERT_TRUE(window->viewport().drawn_by_gpu());
-  }
-  // The processor draws the volume, and says why; the card draws the surface, and the volume where it is told to anew.
-  void expect_processor(const char* why) {
-    choose(Mode::volume);
-    ASSERT_TRUE(settled());
-    EXPECT_FALSE(window->viewport().drawn_by_gpu());
-    EXPECT_TRUE(log.contains("The graphics card cannot draw this")) << log.toStdString();
-    EXPECT_TRUE(log.contains(why)) << log.toStdString();
-    EXPECT_EQ(window->viewport().worker_picture()->image, to_qimage(rendered("cpu")));
-    EXPECT_EQ(screen().pixels, test::to_image(window->viewport().worker_picture()->image).pixels);
-    workspace().set("view.azimuth", "10");
-    ASSERT_TRUE(settled());
-    EXPECT_FALSE(window->viewport().drawn_by_gpu());
-    workspace().reset("view.azimuth");
-    choose(Mode::surface);
-    ASSERT_TRUE(settled());
-    EXPECT_TRUE(window->viewport().drawn_by_gpu());
-  }
-  void expect_card_again() {
-    draw_with(ViewOptions::Drawing::cpu);
-    draw_with(ViewOptions::Drawing::gpu);
-    choose(Mode::volume);
-    ASSERT_TRUE(settled());
-    EXPECT_TRUE(window->viewport().drawn_by_gpu());
-    EXPECT_EQ(compare_images(screen(), good_).max, 0.0);
-  }
-
-  Image good_;
-};
-
-TEST_F(FailingWindowVolume, ByAShader) {
-  static PFNGLSHADERSOURCEPROC real;
-  real = epoxy_glShaderSource;
-  {
-    const Instead other(
-        epoxy_glShaderSource, +[](GLuint shader, GLsizei, const GLchar* const*, const GLint*) {
-          const GLchar* nonsense = "#version 430\nvoid main() { nothing(); }";
-          real(shader, 1, &nonsense, nullptr);
-        });
-    expect_processor("nothing");
-  }
-  expect_card_again();
-}
-
-TEST_F(FailingWindowVolume, ByTheCardsMemory) {
-  {
-    const Instead other(
-        epoxy_glMapBufferRange, +[](GLenum, GLintptr, GLsizeiptr, GLbitfield) -> void* { return nullptr; });
-    expect_processor("memory");
-  }
-  expect_card_again();
-}
-
-TEST_F(FailingWindowVolume, ByALostContext) {
-  // Software drivers have no card to lose, and others tell only who asked for it.
-  EXPECT_TRUE(QSurfaceFormat::defaultFormat().testOption(QSurfaceFormat::ResetNotification));
-  {
-    static bool lost;
-    lost = true;
-    const Instead other(
-        epoxy_glGetGraphicsResetStatus,
-        +[]() -> GLenum { return std::exchange(lost, false) ? GL_UNKNOWN_CONTEXT_RESET : GL_NO_ERROR; });
-    expect_processor("the context is lost");
-  }
-  expect_card_again();
 }
 
 }  // namespace

@@ -23,12 +23,14 @@ namespace {
 // ramps_light() of every segment with its row.
 class RampsShader {
  public:
-  RampsShader()
-      : function_(R"glsl(
+  // With `defines` before it.
+  explicit RampsShader(const std::string& defines = {})
+      : function_(defines + R"glsl(
 struct Row { vec4 texel[8]; };
 layout(std430, binding = 2) readonly buffer Rows { Row rows[]; };
 vec4 piece = vec4(0.0), piece_slope = piece, piece_square = piece, knot = piece, knot_square = piece, next_knot = piece,
      next_knot_square = piece;
+float highest = 0.0;
 )glsl" + shader_source("ramps.glsl") +
                   R"glsl(
 vec4 result_of(vec4 segment) {
@@ -40,6 +42,7 @@ vec4 result_of(vec4 segment) {
   knot_square = row.texel[4];
   next_knot = row.texel[5];
   next_knot_square = row.texel[6];
+  highest = knot_square.a;
   return ramps_light(segment.x, segment.y, row.texel[7].x, segment.z);
 })glsl") {}
 
@@ -192,6 +195,64 @@ TEST_F(MapRampsShader, IsTheJudgeUpToTheLongestSegment) {
     }
   }
   EXPECT_NO_THROW(check_errors("summing ramps"));
+}
+
+// Cells of a single piece, by the program for them, also where nothing is widened.
+TEST_F(MapRampsShader, OfOnePieceIsTheJudge) {
+  const RampsShader one_piece("#define ONE_PIECE\n");
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> one(0.0F, 1.0F);
+  for (const NamedMap& map : segment_maps(peaks())) {
+    std::vector<std::array<float, 4>> cells;
+    for (int i = 0; i < 300; ++i) {
+      const float s = one(random);
+      const float width = i % 3 == 0 ? 0.0F : 0.01F * one(random);
+      cells.push_back({s, std::min(s + width, 1.0F), s, s});
+    }
+    const double alpha_length = 4.0;
+    const MapRamps ramps(scene_of(cells), map.map, alpha_length);
+    std::size_t tested = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto cell = static_cast<Index>(i);
+      std::array<std::uint8_t, MapRamps::most_rows> rows;
+      const int count = ramps.rows_of(cell, rows.data());
+      if (ramps.kind_of(cell) != CellKind::piece || count == 0 || ramps.longest(cell) == 0.0F) continue;
+      ASSERT_EQ(count, 1);
+      const auto [near, far] = i % 2 == 0 ? std::pair(cells[i][0], cells[i][1]) : std::pair(cells[i][1], cells[i][0]);
+      const float length = std::min(ramps.longest(cell), 2.0F) * one(random);
+      const Segment segment{near, far, length, static_cast<float>(rows[0])};
+      const Vec4f light = one_piece.lights(ramps.rows(), {segment}).front();
+      const reference::Contribution exact = reference::integrate_mapped(
+          map.map, static_cast<double>(near), static_cast<double>(far), alpha_length, static_cast<double>(length));
+      const double opacity = 1.0 - exact.transmittance;
+      // what the series leaves out
+      const double series = std::pow(-std::log(exact.transmittance), 7.0) / 5040.0;
+      ASSERT_NEAR(light.a, opacity, series + 1e-6) << map.name << ", " << near << " to " << far;
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_NEAR(light[k], exact.color[k], (most_ramps_change / 12.0) * opacity + series + 1e-6) << map.name;
+      }
+      // Below the piece it counts no further.
+      const RampRow& row = ramps.rows()[rows[0]];
+      const auto row_number = static_cast<float>(rows[0]);
+      const std::vector<Vec4f> kept = one_piece.lights(
+          ramps.rows(), {{near - 10.0F, far, length, row_number}, {row.zero.x + row.lowest, far, length, row_number}});
+      for (int k = 0; k < 4; ++k) ASSERT_NEAR(kept[0][k], kept[1][k], 1e-4) << map.name;
+      ++tested;
+    }
+    EXPECT_GT(tested, 20U) << map.name;
+  }
+  EXPECT_NO_THROW(check_errors("summing ramps"));
+}
+
+TEST(MapRamps, APieceIsWorthAProgramWhereMostCellsHaveOne) {
+  const ColorMap map{{{0.0, Vec4f(1, 0, 0, 0)}, {0.5, Vec4f(1)}, {1.0, Vec4f(1, 0, 0, 0)}}};
+  const std::array<float, 4> low{0.1F, 0.2F, 0.3F, 0.4F};
+  const std::array<float, 4> across{0.4F, 0.6F, 0.5F, 0.5F};
+  const MapRamps most(scene_of({low, across, low}), map, 1.0);
+  EXPECT_EQ(most.kind_of(0), CellKind::piece);
+  EXPECT_EQ(most.kind_of(1), CellKind::ramps);
+  const MapRamps few(scene_of({low, across}), map, 1.0);
+  EXPECT_EQ(few.kind_of(0), CellKind::ramps);
 }
 
 TEST(MapRamps, LeavesOutWhatIsTransparent) {
