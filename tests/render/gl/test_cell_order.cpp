@@ -390,26 +390,30 @@ TEST(CellOrder, IsCancelledInTheMiddle) {
       whole = std::min(whole, cpu_ms() - start);
     }
     EXPECT_EQ(cell_order.outside().empty(), !by_faces);
-    const double most = 0.1 * whole;
     // Where it was when it ended: from none of these to the next is a long way.
     std::vector<double> ends{0.0, whole};
     double longest = whole;
     std::mt19937 random(11);
     std::uniform_real_distribution<double> part(0.0, 1.0);
-    for (int i = 0; i < 1000 && longest > most; ++i) {
-      // Cancelled by the clock and not by another thread, whose turn may come late.
+    for (int i = 0; i < 1000 && longest > 0.1 * whole; ++i) {
+      // Cancelled by the clock and not by another thread, whose turn may come late. A busy machine may take several
+      // times as long as the thread counts.
       const double start = cpu_ms();
-      const std::chrono::duration<double, std::milli> until(part(random) * whole);
+      const std::chrono::duration<double, std::milli> until(part(random) * (1.0 + 5.0 * part(random)) * whole);
       const auto deadline = Progress::Clock::now() + std::chrono::duration_cast<Progress::Clock::duration>(until);
       const Progress progress(no_progress(), 0.0, 1.0, deadline);
       std::vector<Index> order;
-      double end = 0.0;
+      bool cancelled = false;
       try {
         cell_order.sort(camera, cells, {}, order, stats, progress);
       } catch (const CancelledError&) {
-        end = cpu_ms() - start;
+        cancelled = true;
       }
-      if (end == 0.0) continue;  // it was quick
+      const double end = cpu_ms() - start;
+      if (!cancelled) {
+        whole = std::min(whole, end);
+        continue;
+      }
       EXPECT_TRUE(cell_order.outside().empty());
       ends.push_back(end);
       std::ranges::sort(ends);
@@ -418,7 +422,7 @@ TEST(CellOrder, IsCancelledInTheMiddle) {
         longest = std::max(longest, std::min(ends[n], whole) - ends[n - 1]);
       }
     }
-    EXPECT_LE(longest, most) << (by_faces ? "by faces" : "by keys") << " of " << whole << " ms";
+    EXPECT_LE(longest, 0.1 * whole) << (by_faces ? "by faces" : "by keys") << " of " << whole << " ms";
     std::vector<Index> order;
     cell_order.sort(camera, cells, {}, order, stats);
     EXPECT_EQ(order, expected);
